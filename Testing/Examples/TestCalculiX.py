@@ -10,7 +10,7 @@ import sys
 import numpy
 from Baselines import find_difference, read_baselines, read_picture
 from Readers import python
-from Volumes import call, make_ball, make_folder, read_vti
+from Volumes import begin_test, call, make_ball, read_vti
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkNIFTIImageReader, vtkNIFTIImageWriter, vtkPNGWriter
@@ -20,8 +20,7 @@ VOLUME = "/usr/share/mricron/templates/ch2.nii.gz"
 LIMIT = 0.3  # limit of the mean difference of color components (0 to 255)
 CORNERS = ((0, 4, 6, 7), (1, 5, 4, 8), (2, 6, 5, 9), (3, 8, 7, 9))  # tetrahedra of a corner and three mid-side nodes
 
-program, script, baseline = sys.argv[1:4]
-folder = make_folder(sys.argv[4], "CalculiX")
+program, script, baseline, path = begin_test("CalculiX")
 environment = dict(os.environ, PATH=os.path.dirname(python) + os.pathsep + os.environ["PATH"])
 for name, advice in (("ccx", "install calculix-ccx"),
                      ("ccx2paraview", "run bash Testing/packages.sh readers, which installs it from PyPI")):
@@ -33,15 +32,11 @@ if not os.path.exists(VOLUME):
     sys.exit(125)
 
 
-def path(name):
-    return os.path.join(folder, name)
-
-
 def check_misuse():
     """Calls the script without a program, and with a volume that contains no head."""
-    _, errors = call(sys.executable, script, VOLUME, folder, "--deform-volume", path("none"), code=1)
+    _, errors = call(sys.executable, script, VOLUME, path(), "--deform-volume", path("none"), code=1)
     assert f"there is no program {path('none')}" in errors, errors
-    _, errors = call(sys.executable, script, VOLUME, folder, "--deform-volume", program, code=1,
+    _, errors = call(sys.executable, script, VOLUME, path(), "--deform-volume", program, code=1,
                      environment=dict(os.environ, PATH=""))
     assert "there is no program ccx: install CalculiX" in errors, errors
     writer = vtkNIFTIImageWriter()
@@ -169,7 +164,7 @@ def check_picture():
 
 
 check_misuse()
-output, _ = call(sys.executable, script, VOLUME, folder, "--edge-length", 28, "--deform-volume", program,
+output, _ = call(sys.executable, script, VOLUME, path(), "--edge-length", 28, "--deform-volume", program,
                  environment=environment)
 for landmark in ("nose", "crown", "left ear", "brain"):
     assert f"{landmark} (node" in output, output

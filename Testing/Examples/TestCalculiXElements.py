@@ -3,7 +3,6 @@
 weight, at small strains. CalculiX solves the same load case with ten-node tetrahedra (C3D10) of half the size. For a
 Poisson ratio of 0.3 it also solves the load case on the same mesh, because the elements are the same there.
 Usage: TestCalculiXElements.py FOLDER"""
-import os
 import re
 import shutil
 import subprocess
@@ -14,9 +13,9 @@ from deformvolume_vtk import vtkFiniteElementDeformation, vtkTetGenMesher
 from MeshFiles import to_points, to_vtk
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import VTK_QUADRATIC_TETRA, vtkCellArray, vtkPolyData
-from Volumes import make_folder
+from Volumes import begin_test
 
-folder = make_folder(sys.argv[1], "CalculiXElements")
+(path,) = begin_test("CalculiXElements")
 if not shutil.which("ccx"):
     print("skipped: ccx is missing: install calculix-ccx")
     sys.exit(125)
@@ -128,7 +127,7 @@ def refine(places, is_fixed, cells):
 def run_calculix(name, places, is_fixed, cells, nodes, poisson_ratio):
     """Runs a linear step of CalculiX, in mm, N and t. Returns the displacements of the given nodes."""
     strength = numpy.linalg.norm(GRAVITY)
-    with open(os.path.join(folder, name + ".inp"), "w", encoding="ascii") as file:
+    with open(path(name + ".inp"), "w", encoding="ascii") as file:
         file.write("*NODE\n")
         for node, place in enumerate(places, 1):
             file.write(f"{node}, " + ", ".join(f"{number:.12g}" for number in place) + "\n")
@@ -142,10 +141,10 @@ def run_calculix(name, places, is_fixed, cells, nodes, poisson_ratio):
                    f"*STEP\n*STATIC\n*DLOAD\nBODY, GRAV, {1e3 * strength}, " +
                    ", ".join(f"{component / strength:.12g}" for component in GRAVITY) +
                    "\n*NODE PRINT, NSET=PRINTED\nU\n*END STEP\n")
-    result = subprocess.run(["ccx", "-i", name], cwd=folder, text=True, check=False, stdout=subprocess.PIPE,
+    result = subprocess.run(["ccx", "-i", name], cwd=path(), text=True, check=False, stdout=subprocess.PIPE,
                             stderr=subprocess.STDOUT, timeout=240)
     assert result.returncode == 0, result.stdout[-1000:]
-    with open(os.path.join(folder, name + ".dat"), encoding="ascii") as file:
+    with open(path(name + ".dat"), encoding="ascii") as file:
         rows = re.findall(r"^ +(\d+)" + r" +(-?\d\.\d+E[-+]\d+)" * 3 + "$", file.read(), flags=re.MULTILINE)
     moves = {int(row[0]) - 1: numpy.array(row[1:], dtype=float) for row in rows}
     assert sorted(moves) == sorted(nodes), rows

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests the options of deform-volume, and the texts and exit codes of its errors.
 Usage: TestCommandLine.py PROGRAM FOLDER"""
+import functools
 import os
 import re
-import sys
 
+import Messages
 import numpy
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from MeshFiles import to_points, to_vtk, write
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkDoubleArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkStructuredGrid, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import (
     vtkXMLStructuredGridWriter,
@@ -16,26 +17,14 @@ from vtkmodules.vtkIOXML import (
     vtkXMLUnstructuredGridWriter,
 )
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "CommandLine")
-
-
-def path(name):
-    return os.path.join(folder, name)
-
-
+program, path = begin_test("CommandLine")
 volume = make_ball()
 write_vti(volume, path("in.vti"))
 push = ("--push", "9,20,25,3,0,0,15")
 lattice = ("--lattice", "9,9,9")
 
 
-def fails(code, expected, *arguments, environment=None):
-    output, errors = call(program, *arguments, code=code, environment=environment)
-    assert output == "", output
-    assert errors.startswith("deform-volume: "), errors
-    assert expected in errors, f"{expected} is not in {errors}"
-
+fails = functools.partial(Messages.fails, program)
 
 # Wrong usage.
 fails(2, "no VOLUME")
@@ -123,14 +112,14 @@ for suffix in read | {".nii", ".mhd", ".mha", ".nrrd", ".nhdr", ".mgz", ".img", 
     assert ("a volume is a" in errors) == (suffix not in read), errors
     _, errors = call(program, path("none.vti"), *lattice, *push, "-o", path("o" + suffix), code=None)
     assert ("must end in" in errors) == (suffix not in written), errors
-_, errors = call(program, folder, *lattice, *push, "-o", path("o.vti"), code=1)
+_, errors = call(program, path(), *lattice, *push, "-o", path("o.vti"), code=1)
 assert ("DICOM" in line) == ("a volume is a" not in errors), errors
 
 # Input files are not overwritten, whatever path to them is given.
 with open(path("in.vti"), "rb") as file:
     content = file.read()
 os.symlink("in.vti", path("link.vti"))
-for output in ("in.vti", "../" + os.path.basename(folder) + "/in.vti", "link.vti"):
+for output in ("in.vti", "../" + os.path.basename(path()) + "/in.vti", "link.vti"):
     fails(2, "overwritten", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "-o",
           path(output))
 fails(2, "overwritten", path("other.vti"), "--mesh", path("in.vti"), "--displacement", "D", "-o",
@@ -150,9 +139,9 @@ fails(1, "no folder", path("in.vti"), *lattice, *push, "-o", path("none/o.vti"))
 fails(1, "no such file", path("in.vti"), "--mesh", path("none.vtu"), "--displacement", "D", "-o",
       path("o.vti"))
 fails(1, "no-such-device", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--device",
-      "no-such-device")
+      "no-such-device", warnings=1)
 fails(1, "no such array", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--categorical",
-      "Labels")
+      "Labels", warnings=1)
 no_display = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
 fails(1, "xvfb-run", path("in.vti"), *lattice, *push, "--image", path("o.png"),
       environment=no_display)
@@ -216,11 +205,7 @@ deformed = vtkUnstructuredGrid()
 deformed.DeepCopy(mesh)
 for node, move in enumerate(moves):
     deformed.GetPoints().SetPoint(node, *(points[node] + move))
-writer = vtkXMLUnstructuredGridWriter()
-writer.SetInputData(deformed)
-writer.SetFileName(path("deformed.vtu"))
-writer.SetDataModeToBinary()
-assert writer.Write()
+write(vtkXMLUnstructuredGridWriter(), deformed, path("deformed.vtu"), SetDataMode=1)
 call(program, path("in.vti"), "--mesh", path("deformed.vtu"), "--rest", path("mesh.vtu"), "-o",
      path("pair.vti"), "--background", "-7", "--bounds", "volume", "--quiet")
 assert numpy.array_equal(after, get_values(read_vti(path("pair.vti")), "Values"))
@@ -235,19 +220,9 @@ assert (after != get_values(read_vti(path("beside.vti")), "Values")).mean() < 1e
 box = volume.GetBounds()
 grid = vtkStructuredGrid()
 grid.SetDimensions(2, 2, 2)
-corners = vtkPoints()
-still = vtkDoubleArray()
-still.SetName("D")
-still.SetNumberOfComponents(3)
-for corner in range(8):
-    corners.InsertNextPoint(*(box[2 * axis + (corner >> axis & 1)] for axis in range(3)))
-    still.InsertNextTuple((0, 0, 0))
-grid.SetPoints(corners)
-grid.GetPointData().AddArray(still)
-writer = vtkXMLStructuredGridWriter()
-writer.SetInputData(grid)
-writer.SetFileName(path("grid.vts"))
-assert writer.Write()
+grid.SetPoints(to_points([[box[2 * axis + (corner >> axis & 1)] for axis in range(3)] for corner in range(8)]))
+grid.GetPointData().AddArray(to_vtk("D", numpy.zeros((8, 3))))
+write(vtkXMLStructuredGridWriter(), grid, path("grid.vts"))
 call(program, path("in.vti"), "--mesh", path("grid.vts"), "--displacement", "D", "-o",
      path("still.vti"), "--quiet")
 assert numpy.array_equal(get_values(volume, "Values"), get_values(read_vti(path("still.vti")), "Values"))

@@ -13,16 +13,11 @@ except ImportError:
     print("Skipped: there is no Python module Xlib. Install python3-xlib.")
     sys.exit(125)
 
-from Volumes import make_ball, make_folder, write_vti
+from Volumes import begin_test, make_ball, write_vti
 from WindowEvents import WindowEvents
 
 PATIENCE = 100.0  # time limit of wait_for(), in seconds
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Drop")
-
-
-def path(name):
-    return os.path.join(folder, name)
+program, path = begin_test("Drop")
 
 
 def wait_for(find):
@@ -91,7 +86,7 @@ class Source:
 write_vti(make_ball(dimensions=(31, 28, 25), spacing=(1.0, 1.0, 1.0)), path("ball.vti"))
 WindowEvents().keys("s\r").wait(2).write(path("events.log"))
 with subprocess.Popen([program, path("ball.vti"), "--size", "200,200"], stdout=subprocess.PIPE,
-                      stderr=subprocess.STDOUT, cwd=folder) as running:
+                      stderr=subprocess.STDOUT, cwd=path()) as running:
     try:
         Source().drop(path("events.log"))
         wait_for(lambda: os.path.exists(path("ball-deformed.vti")))

@@ -1,24 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests that deform-volume reads and writes volumes at their position in the world.
+"""Tests that deform-volume reads and writes volumes at their position in the world. TestVolumeFiles and TestDICOM test
+further formats.
 Usage: TestFormats.py PROGRAM FOLDER"""
 import gzip
 import math
-import os
 import re
 import struct
-import sys
 
 import numpy
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+import Readers
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Formats")
-
-
-def path(name):
-    return os.path.join(folder, name)
-
+program, path = begin_test("Formats")
 
 # A push that moves no voxel by as much as 1/512 voxel, so that values do not change.
 still = ("--lattice", "3,3,3", "--push", "0,0,0,0.0001,0,0,1000")
@@ -31,14 +25,8 @@ def convert(source, *targets):
 
 
 def get_matrix(image):
-    """Returns the matrix from an index, counted from the first voxel of the extent, to the world."""
-    extent = image.GetExtent()
-    first = [0.0] * 3
-    image.TransformIndexToPhysicalPoint(extent[0], extent[2], extent[4], first)
-    direction = image.GetDirectionMatrix()
-    matrix = numpy.array([[direction.GetElement(row, column) for column in range(3)]
-                          for row in range(3)]) * numpy.array(image.GetSpacing())
-    return numpy.column_stack([matrix, first])
+    """Returns the matrix from an index, counted from the first voxel of the extent, to the world, without its last row."""
+    return Readers.get_matrix(image)[:3]
 
 
 def same(image, values, matrix):
@@ -152,69 +140,6 @@ same(read_vti(path("f.vti")), values, plain)
 call(program, path("mirrored.nii.gz"), *still, "-o", path("f.vti"), "--quiet", "--bounds", "volume",
      "--file-coordinates")
 same(read_vti(path("f.vti")), get_values(mirrored)[::-1], plain)
-
-# An NRRD file, which the test writes.
-columns = matrix[:, :3]
-with open(path("n.nrrd"), "wb") as file:
-    directions = " ".join("(" + ",".join(repr(float(number)) for number in columns[:, axis]) + ")"
-                          for axis in range(3))
-    header = ("NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\n"
-              f"sizes: {' '.join(str(n) for n in volume.GetDimensions())}\n"
-              f"space directions: {directions}\nkinds: domain domain domain\nendian: little\n"
-              "encoding: gzip\n"
-              f"space origin: ({','.join(repr(float(number)) for number in matrix[:, 3])})\n\n")
-    file.write(header.encode() + gzip.compress(values.astype("<i2").tobytes()))
-same(convert("n.nrrd", "n.vti"), values, matrix)
-convert("n.nrrd", "n.nii")
-same(convert("n.nii", "n.vti"), values, flip @ matrix)
-
-
-# A DICOM series of unsigned shorts, explicit little endian.
-def element(group, number, kind, value):
-    if isinstance(value, str):
-        value = value.encode()
-    if len(value) % 2:
-        value += b"\0" if kind == "UI" else b" "
-    head = struct.pack("<HH", group, number) + kind.encode()
-    if kind in ("OB", "OW"):
-        return head + struct.pack("<HI", 0, len(value)) + value
-    return head + struct.pack("<H", len(value)) + value
-
-
-def short(number):
-    return struct.pack("<H", number)
-
-
-series = numpy.arange(6 * 5 * 4, dtype="<u2").reshape(6, 5, 4)
-os.makedirs(path("series"), exist_ok=True)
-for slice_number, pixels in enumerate(series):
-    meta = element(2, 0x10, "UI", "1.2.840.10008.1.2.1")
-    data = b"".join([
-        element(8, 0x16, "UI", "1.2.840.10008.5.1.4.1.1.4"),
-        element(8, 0x18, "UI", f"1.2.3.4.{slice_number + 1}"),
-        element(0x20, 0xE, "UI", "1.2.3.4"),
-        element(0x20, 0x13, "IS", str(slice_number + 1)),
-        element(0x20, 0x32, "DS", f"-10\\-20\\{30 + 3 * slice_number}"),
-        element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0"),
-        element(0x28, 2, "US", short(1)),
-        element(0x28, 4, "CS", "MONOCHROME2"),
-        element(0x28, 0x10, "US", short(5)),
-        element(0x28, 0x11, "US", short(4)),
-        element(0x28, 0x30, "DS", "2\\2"),
-        element(0x28, 0x100, "US", short(16)),
-        element(0x28, 0x101, "US", short(16)),
-        element(0x28, 0x102, "US", short(15)),
-        element(0x28, 0x103, "US", short(0)),
-        element(0x7FE0, 0x10, "OW", pixels.tobytes())])
-    with open(path(f"series/{slice_number}.dcm"), "wb") as file:
-        file.write(b"\0" * 128 + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) +
-                   meta + data)
-call(program, path("series"), *still, "-o", path("s.vti"), "--quiet", "--bounds", "volume")
-result = read_vti(path("s.vti"))
-assert result.GetDimensions() == (4, 5, 6), result.GetDimensions()
-assert numpy.allclose(result.GetSpacing(), (2, 2, 3))
-expected = numpy.array([[2, 0, 0, -10], [0, 2, 0, -20], [0, 0, 3, 30]])
-same(result, series, expected)
 
 # Slope and intercept are applied once.
 with gzip.open(path("a.nii.gz"), "rb") as file:

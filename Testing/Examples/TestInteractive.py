@@ -3,24 +3,17 @@
 the saved session.
 Usage: TestInteractive.py PROGRAM SCRIPT FOLDER"""
 import collections
-import os
 import re
 import sys
 
 import deformvolume_vtk
 import numpy
 from Baselines import read_picture
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 from WindowEvents import WindowEvents
 from vtkmodules.vtkIOImage import vtkNIFTIImageWriter
 
-program, script = sys.argv[1:3]
-folder = make_folder(sys.argv[3], "Interactive")
-
-
-def path(name):
-    return os.path.join(folder, name)
-
+program, script, path = begin_test("Interactive")
 
 ball = make_ball(dimensions=(31, 28, 25), spacing=(1.0, 1.0, 1.0))
 write_vti(ball, path("ball.vti"))

@@ -3,30 +3,27 @@
 Usage: TestItkFields.py PROGRAM FOLDER"""
 import gzip
 import itertools
-import os
 import struct
-import sys
 
 import numpy
 import Readers
-from Volumes import call, get_values, make_folder, read_vti
+from Volumes import begin_test, call, get_values, read_vti
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "ItkFields")
-Readers.run("ItkFields.py", folder)
+program, path = begin_test("ItkFields")
+Readers.run("ItkFields.py", path())
 
-with gzip.open(os.path.join(folder, "fine-1006.nii.gz"), "rb") as file:
+with gzip.open(path("fine-1006.nii.gz"), "rb") as file:
     assert struct.unpack("<h", file.read()[68:70]) == (1006,)
 
 suffixes = (".nii.gz", ".nii", ".mha", ".mhd", ".nrrd", ".nhdr", "-zip.nrrd", "-zip.mha", "-1006.nii.gz")
 for name, suffix, volume in itertools.product(("fine", "coarse"), suffixes,
                                               ("moving.nii.gz", "moving.mha")):
-    target = os.path.join(folder, "out.vti")
-    call(program, os.path.join(folder, volume), "--field", os.path.join(folder, name + suffix),
+    target = path("out.vti")
+    call(program, path(volume), "--field", path(name + suffix),
          "--field-is-inverse", "--bounds", "volume", "--quiet", "-o", target)
     result = read_vti(target)
     values, covered = get_values(result), get_values(result, "vtkValidPointMask") != 0
-    expected = numpy.load(os.path.join(folder, name + ".npy"))
+    expected = numpy.load(path(name + ".npy"))
     # ITK extends the volume by half a voxel on each side, and deform-volume by 1/256 voxel.
     assert not (covered & (expected == -100)).any()
     assert covered.sum() > 0.5 * covered.size, covered.sum()

@@ -4,7 +4,6 @@ Usage: TestLabels.py PROGRAM FOLDER"""
 import gzip
 import os
 import struct
-import sys
 
 import numpy
 from deformvolume_vtk import vtkDeformVolumeFilter
@@ -16,17 +15,10 @@ from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkNIFTIImageReader
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Labels")
+program, path = begin_test("Labels")
 TYPES = ("int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "float32", "float64")
-
-
-def path(name):
-    return os.path.join(folder, name)
-
-
 volume = make_ball(direction=turn(2, 30).ravel())
 air = vtk_to_numpy(volume.GetPointData().GetScalars())
 air -= 1000

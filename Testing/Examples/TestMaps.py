@@ -2,23 +2,14 @@
 """Tests the inverse field that deform-volume writes, by which SimpleITK resamples the volume to the same result, the
 Jacobian, and densities, whose sum is preserved.
 Usage: TestMaps.py PROGRAM FOLDER"""
-import os
 import re
-import sys
 
 import numpy
 import Readers
-from Volumes import call, get_values, make_folder, read_vti, write_vti
+from Volumes import begin_test, call, get_values, read_vti, write_vti
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Maps")
-
-
-def path(name):
-    return os.path.join(folder, name)
-
-
-Readers.run("Maps.py", "make", folder)
+program, path = begin_test("Maps")
+Readers.run("Maps.py", "make", path())
 forward = ("--field", path("forward.mha"))
 
 
@@ -45,7 +36,7 @@ for volume, field, grid in (("moving.nii.gz", ".nii.gz", None), ("moving.nii.gz"
                      *(("--reference", path(grid)) if grid else ()), "--background", str(background),
                      "-o", path(names["result"]), "--inverse-field", path(names["inverse"]),
                      "--jacobian", path(names["jacobian"]), "-q")
-    Readers.run("Maps.py", "check", folder, volume, names["result"], names["inverse"], names["jacobian"],
+    Readers.run("Maps.py", "check", path(), volume, names["result"], names["inverse"], names["jacobian"],
                 str(background))
     found = re.findall(r"inverse field is 0 at (\d+) of (\d+) voxels", errors)
     # The whole grid of the volume is covered, because the deformation is zero at the border. So only a run with another

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests that deform-volume reads meshes and sheets of many formats, each with the same result, and that the error for a
 file that it cannot use states what the file contains. Usage: TestMeshFiles.py PROGRAM FOLDER"""
+import functools
 import os
 import re
 import shutil
-import sys
 
 import Messages
 import numpy
@@ -16,6 +16,7 @@ from MeshFiles import (
     make_moves,
     make_places,
     make_rectilinear,
+    make_sheet,
     make_structured,
     make_tetrahedra,
     make_unstructured,
@@ -27,7 +28,7 @@ from MeshFiles import (
     write_exodus,
     write_hdf,
 )
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkVersion
 from vtkmodules.vtkCommonDataModel import (
@@ -43,7 +44,6 @@ from vtkmodules.vtkCommonDataModel import (
     vtkUnstructuredGrid,
 )
 from vtkmodules.vtkFiltersCore import vtkTriangleFilter
-from vtkmodules.vtkFiltersSources import vtkPlaneSource
 from vtkmodules.vtkIOGeometry import vtkSTLWriter
 from vtkmodules.vtkIOGeometry import vtkOBJWriter
 from vtkmodules.vtkIOLegacy import (
@@ -64,16 +64,7 @@ from vtkmodules.vtkIOXML import (
     vtkXMLUnstructuredGridWriter,
 )
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "MeshFiles")
-for entry in os.listdir(folder):
-    shutil.rmtree(os.path.join(folder, entry))
-
-
-def path(name):
-    return os.path.join(folder, name)
-
-
+program, path = begin_test("MeshFiles")
 volume = make_ball()
 write_vti(volume, path("in.vti"))
 axes, places = make_places(volume.GetBounds())
@@ -82,11 +73,7 @@ mesh = make_unstructured(places, moves)
 XML = {"SetDataMode": 1, "SetHeaderType": 64}  # binary, not appended
 
 
-def fails(code, expected, *arguments, source="in.vti", warnings=0):
-    """Checks that the program fails with one line and without an output file."""
-    Messages.fails(program, code, expected, path(source), *arguments, "-o", path("o.vti"),
-                   warnings=warnings)
-    assert not os.path.exists(path("o.vti"))
+fails = functools.partial(Messages.refuses, program, path)
 
 
 def as_mesh(name, displacement="Displacement"):
@@ -145,17 +132,6 @@ def make_point():
     return grid
 
 
-def make_sheet():
-    plane = vtkPlaneSource()
-    bounds = volume.GetBounds()
-    x = 0.5 * (bounds[0] + bounds[1]) + 0.25
-    plane.SetOrigin(x, bounds[2] - 1, bounds[4] - 1)
-    plane.SetPoint1(x, bounds[3] + 1, bounds[4] - 1)
-    plane.SetPoint2(x, bounds[2] - 1, bounds[5] + 1)
-    plane.Update()
-    return plane.GetOutput()
-
-
 def make_flat():
     """Returns a grid with cells of all dimensions except three."""
     grid = make_unstructured(places, moves, [])
@@ -184,7 +160,7 @@ def write_polyhedra(name):
 def write_sheets():
     """Writes one sheet in all formats, and returns the names of the files. All formats can represent its coordinates
     exactly."""
-    sheet = make_sheet()
+    sheet = make_sheet(volume.GetBounds(), volume.GetCenter()[0] + 0.25)
     sheet.GetPointData().Initialize()
     triangulation = vtkTriangleFilter()
     triangulation.SetInputData(sheet)
@@ -261,7 +237,7 @@ def check_misuse_of_meshes():
     # Files with data other than meshes.
     write(vtkXMLRectilinearGridWriter(), make_point(), path("point.vtr"), **XML)
     fails(1, ["1 point and 1 vertex cell", "three-dimensional cells"], *as_mesh("point.vtr", "u"))
-    sheet = make_sheet()
+    sheet = make_sheet(volume.GetBounds(), volume.GetCenter()[0] + 0.25)
     write(vtkXMLPolyDataWriter(), sheet, path("sheet.vtp"), **XML)
     write(vtkPolyDataWriter(), sheet, path("sheet.vtk"))
     for name in ("sheet.vtp", "sheet.vtk"):
@@ -519,7 +495,7 @@ def check_spaces_of_sheets():
     """Checks the world of sheets in all formats, with headers and comments as 3D Slicer writes them."""
     pull = ("--model", "chainmail", "--pull", "8,20,25,-3,1,1,3")
     expected = deform("--cut", path("cut.vtp"), *pull)
-    sheet = make_sheet()
+    sheet = make_sheet(volume.GetBounds(), volume.GetCenter()[0] + 0.25)
     sheet.GetPointData().Initialize()
     sheet.SetPoints(to_points(FLIP * vtk_to_numpy(sheet.GetPoints().GetData())))
     triangulation = vtkTriangleFilter()

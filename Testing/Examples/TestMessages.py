@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests that messages of deform-volume about wrong files and numbers use only words that its users know.
 Usage: TestMessages.py PROGRAM FOLDER"""
+import functools
 import os
-import sys
 
 import Messages
 import numpy
@@ -17,7 +17,7 @@ from MeshFiles import (
     to_vtk,
     write,
 )
-from Volumes import call, make_ball, make_folder, write_vti
+from Volumes import begin_test, call, make_ball, write_vti
 from vtkmodules.vtkCommonDataModel import (
     VTK_BEZIER_TETRAHEDRON,
     VTK_CONVEX_POINT_SET,
@@ -34,22 +34,13 @@ from vtkmodules.vtkIOXML import (
     vtkXMLUnstructuredGridWriter,
 )
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Messages")
+program, path = begin_test("Messages")
 XML = {"SetDataMode": 1}
+fails = functools.partial(Messages.refuses, program, path)
 
 
-def path(name):
-    return os.path.join(folder, name)
-
-
-def fails(code, expected, *arguments, volume="in.vti"):
-    Messages.fails(program, code, expected, path(volume), *arguments, "-o", path("o.vti"))
-    assert not os.path.exists(path("o.vti"))
-
-
-def warns(expected, *arguments, volume="in.vti"):
-    Messages.warns(program, expected, path(volume), *arguments, "-o", path("o.vti"))
+def warns(expected, *arguments, source="in.vti"):
+    Messages.warns(program, expected, path(source), *arguments, "-o", path("o.vti"))
     os.remove(path("o.vti"))
 
 
@@ -124,11 +115,11 @@ def check_volumes():
         write_vti(image, path(name))
         for arguments in ((*lattice, *push), ("--tetgen", *push), cut, field,
                           ("--model", "fem", *lattice, "--pull", "9,20,25,1,0,0")):
-            fails(1, [path(name), expected], *arguments, volume=name)
+            fails(1, [path(name), expected], *arguments, source=name)
     for name in ("grid.vtr", "grid.vts", "mesh.vtu"):
         with open(path(name), "ab"):
             pass
-        fails(1, [path(name), "a volume is a", "Resample To Image"], *mesh, volume=name)
+        fails(1, [path(name), "a volume is a", "Resample To Image"], *mesh, source=name)
     # Without active scalars the first array is used.
     image = make_ball()
     image.GetPointData().SetActiveScalars(None)
@@ -237,13 +228,13 @@ def check_meshers():
     image = make_ball()
     image.GetPointData().GetScalars().Fill(3)
     write_vti(image, path("constant.vti"))
-    fails(1, "isovalue", *tetgen, volume="constant.vti")
+    fails(1, "isovalue", *tetgen, source="constant.vti")
     image.GetPointData().SetScalars(to_vtk("Colors", numpy.zeros((25 * 22 * 19, 3), numpy.uint8)))
     write_vti(image, path("colors.vti"))
-    fails(1, 'first component of the point array "Colors"', *tetgen, volume="colors.vti")
+    fails(1, 'first component of the point array "Colors"', *tetgen, source="colors.vti")
     image.GetPointData().SetScalars(to_vtk("Labels", numpy.zeros(25 * 22 * 19, numpy.uint8)))
     write_vti(image, path("labels.vti"))
-    fails(1, "label other than 0", *tetgen, "--labels", volume="labels.vti")
+    fails(1, "label other than 0", *tetgen, "--labels", source="labels.vti")
     fails(1, "edge length", *tetgen, "--edge-length", "0.001")
     ball = (*tetgen, "--isovalue", "400", "--edge-length", "5")
     warns("two thirds of the fade distance", *ball, "--keep", "0.1")
@@ -266,7 +257,7 @@ def check_models():
     image = make_ball(spacing=(1e-3, 1.5e-3, 2e-3), origin=(0, 0, 0))
     write_vti(image, path("metres.vti"))
     warns("millimeter", "--model", "fem", "--lattice", "5,5,5", "--fix", "below:0.001",
-          *gravity, volume="metres.vti")
+          *gravity, source="metres.vti")
     fails(1, "OpenCL", *mesh, "--device", "no-such-device")
 
 
@@ -279,7 +270,7 @@ def check_coverage():
 def check_permission():
     """Checks files that the user cannot read. The superuser reads them, so another user starts the program."""
     user = ("setpriv", "--reuid", "65534", "--clear-groups") if os.geteuid() == 0 else ("env",)
-    os.chmod(folder, 0o777)
+    os.chmod(path(), 0o777)
     if call(*user, program, "--help", code=None, quiet=True)[1]:
         print("files without permission are not tested: another user cannot start the program")
         return
@@ -292,7 +283,7 @@ def check_permission():
             os.chmod(secret, 0)
         Messages.fails(user[0], 1, f"{secret}: there is no permission to read it", *user[1:], program, path(name),
                        *arguments, "-o", path("o.vti"))
-    os.chmod(folder, 0o755)
+    os.chmod(path(), 0o755)
 
 
 check_resamplers()

@@ -2,19 +2,17 @@
 """Tests that the minimal examples in C++ and Python have the same output, and that it is the one which their comments
 describe.
 Usage: TestMinimal.py PROGRAM SCRIPT FOLDER"""
-import os
 import sys
 
 import numpy
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 
-program, script = sys.argv[1:3]
-folder = make_folder(sys.argv[3], "Minimal")
-source, first, second = (os.path.join(folder, name) for name in ("in.vti", "cxx.vti", "py.vti"))
+program, script, path = begin_test("Minimal")
+source, first, second = (path(name) for name in ("in.vti", "cxx.vti", "py.vti"))
 
 call(program, code=2)
-call(program, os.path.join(folder, "missing.vti"), first, code=1, quiet=True)
-call(sys.executable, script, os.path.join(folder, "missing.vti"), first, code=1, quiet=True)
+call(program, path("missing.vti"), first, code=1, quiet=True)
+call(sys.executable, script, path("missing.vti"), first, code=1, quiet=True)
 
 volume = make_ball(origin=(0.0, 0.0, 0.0))
 write_vti(volume, source)

@@ -1,28 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests that deform-volume moves meshes by finite elements and by springs as the filters do, and reports wrong options.
 Usage: TestModels.py PROGRAM FOLDER"""
+import functools
 import os
 import re
-import sys
 
 import deformvolume_vtk
 import Messages
 import numpy
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkPolyData, vtkUnstructuredGrid
+from MeshFiles import make_handles, to_vtk
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Models")
-
-
-def path(name):
-    return os.path.join(folder, name)
-
-
+program, path = begin_test("Models")
 volume = make_ball()
 write_vti(volume, path("in.vti"))
 bounds = volume.GetBounds()
@@ -35,13 +28,7 @@ pull = ("--pull", pull_text)
 gravity = ("--gravity", "0,0,-1")
 
 
-def fails(code, expected, *arguments):
-    output, errors = call(program, path("in.vti"), *arguments, "-o", path("o.vti"), code=code)
-    assert output == "", output
-    assert errors.startswith("deform-volume: "), errors
-    assert expected in errors, f"{expected} is not in {errors}"
-    assert not os.path.exists(path("o.vti"))
-
+fails = functools.partial(Messages.refuses, program, path)
 
 # Misuse.
 for model in ("fem", "mass-spring"):
@@ -103,24 +90,14 @@ source.Update()
 mesh = vtkUnstructuredGrid()
 mesh.DeepCopy(source.GetOutput())
 heights = vtk_to_numpy(mesh.GetPoints().GetData())[:, 2]
-fixed = numpy_to_vtk((heights <= height).astype(numpy.uint8), deep=True)
-fixed.SetName("Fixed")
-mesh.GetPointData().AddArray(fixed)
-numbers = [float(number) for number in pull_text.split(",")]
-handles = vtkPolyData()
-points = vtkPoints()
-points.SetDataTypeToDouble()
-points.InsertNextPoint(*(numbers[axis] + numbers[3 + axis] for axis in range(3)))
-handles.SetPoints(points)
-rest = numpy_to_vtk(numpy.array([numbers[:3]]), deep=True)
-rest.SetName("RestPosition")
-handles.GetPointData().AddArray(rest)
+mesh.GetPointData().AddArray(to_vtk("Fixed", (heights <= height).astype(numpy.uint8)))
+handles, radius = make_handles(pull_text)
 
 
 def check(name, model, words, *arguments):
     model.SetInputData(mesh)
     model.SetHandlesData(handles)
-    model.SetHandleRadius(numbers[6])
+    model.SetHandleRadius(radius)
     model.SetLengthUnitToMillimetre()
     model.SetYoungModulus(5000)
     model.SetPoissonRatio(0.4)
@@ -186,7 +163,7 @@ def check_materials_and_cut():
     model.SetInputConnection(materials.GetOutputPort())
     model.SetModeToConverged()
     model.SetHandlesData(handles)
-    model.SetHandleRadius(numbers[6])
+    model.SetHandleRadius(radius)
     model.SetLengthUnitToMillimetre()
     model.SetSheetConnection(plane.GetOutputPort())
     deform = deformvolume_vtk.vtkDeformVolumeFilter()

@@ -2,21 +2,12 @@
 """Tests that deform-volume draws the frames of a simulation, as pictures, and as a video if VTK has Ogg Theora.
 Usage: TestMovie.py PROGRAM FOLDER"""
 import os
-import sys
 
 import numpy
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOImage import vtkPNGReader
+from Baselines import read_picture
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Movie")
-
-
-def path(name):
-    return os.path.join(folder, name)
-
-
+program, path = begin_test("Movie")
 ball = make_ball(dimensions=(25, 22, 19), spacing=(1.0, 1.0, 1.0))
 write_vti(ball, path("in.vti"))
 bounds = ball.GetBounds()
@@ -25,12 +16,9 @@ common = ("--lattice", "5,5,5", "--fix", f"below:{bounds[4] + 2}", "--pull", pul
 
 
 def read(name):
-    reader = vtkPNGReader()
-    reader.SetFileName(path(name))
-    reader.Update()
-    assert reader.GetOutput().GetDimensions() == (1400, 700, 1), reader.GetOutput().GetDimensions()
-    picture = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
-    return picture.reshape(700, 1400, -1).astype(int)
+    picture = read_picture(path(name))
+    assert picture.shape == (700, 1400, 3), picture.shape
+    return picture
 
 
 def count_packets(name):

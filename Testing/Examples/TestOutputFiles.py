@@ -6,27 +6,21 @@ import shutil
 import signal
 import stat
 import subprocess
-import sys
 import time
 from resource import RLIMIT_FSIZE, setrlimit
 
 import numpy
+from MeshFiles import to_vtk
 from Messages import check_words
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
-from vtkmodules.util.numpy_support import numpy_to_vtk
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 from vtkmodules.vtkFiltersSources import vtkSphereSource
 from vtkmodules.vtkIOGeometry import vtkSTLWriter
 from vtkmodules.vtkIOPLY import vtkPLYWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "OutputFiles")
-outputs = make_folder(folder, "outputs")
+program, path = begin_test("OutputFiles")
+outputs = path("outputs")
 OLD = "the older file"
-
-
-def path(name):
-    return os.path.join(folder, name)
 
 
 def output(name):
@@ -36,9 +30,7 @@ def output(name):
 # Noise, which compression does not make smaller. The files have to be larger than those of compilers of kernels.
 volume = make_ball((128, 128, 128), (1, 1, 1), (0, 0, 0))
 noise = numpy.random.default_rng(2).integers(-2**15, 2**15, 128**3).astype(numpy.int16)
-array = numpy_to_vtk(noise, deep=True)
-array.SetName("Values")
-volume.GetPointData().SetScalars(array)
+volume.GetPointData().SetScalars(to_vtk("Values", noise))
 write_vti(volume, path("in.vti"))
 sphere = vtkSphereSource()
 sphere.SetCenter(64, 64, 64)
@@ -57,7 +49,7 @@ common = (path("in.vti"), "--lattice", "3,3,3", "--push", "64,64,64,1,0,0,1000",
 
 
 def write_old(names):
-    shutil.rmtree(outputs)
+    shutil.rmtree(outputs, ignore_errors=True)
     os.makedirs(outputs)
     for name in names:
         with open(output(name), "w", encoding="utf-8") as file:

@@ -1,29 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests that deform-volume draws a picture with the volume at rest on the left, and the deformed volume on the right.
 Usage: TestPicture.py PROGRAM FOLDER"""
-import os
-import sys
 
 import numpy
-from Volumes import call, make_ball, make_folder, write_vti
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOImage import vtkPNGReader
+from Baselines import read_picture
+from Volumes import begin_test, call, make_ball, write_vti
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Picture")
-write_vti(make_ball(dimensions=(41, 36, 31), spacing=(1.0, 1.0, 1.0)), os.path.join(folder, "in.vti"))
+program, path = begin_test("Picture")
+write_vti(make_ball(dimensions=(41, 36, 31), spacing=(1.0, 1.0, 1.0)), path("in.vti"))
 
 
 def draw(name, push, *arguments):
-    file = os.path.join(folder, name)
-    call(program, os.path.join(folder, "in.vti"), "--lattice", "12,12,12", "--push", push, "--image",
+    file = path(name)
+    call(program, path("in.vti"), "--lattice", "12,12,12", "--push", push, "--image",
          file, "--quiet", *arguments)
-    reader = vtkPNGReader()
-    reader.SetFileName(file)
-    reader.Update()
-    assert reader.GetOutput().GetDimensions() == (1400, 700, 1), reader.GetOutput().GetDimensions()
-    picture = vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())
-    picture = picture.reshape(700, 1400, -1).astype(int)
+    picture = read_picture(file)
+    assert picture.shape == (700, 1400, 3), picture.shape
     # Without the captions.
     return picture[60:, :700], picture[60:, 700:]
 

@@ -4,27 +4,22 @@ Usage: TestPoints.py PROGRAM FOLDER"""
 import json
 import os
 import re
-import sys
 
 import Messages
 import numpy
 import Readers
-from Volumes import call, make_ball, make_folder, write_vti
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
+from MeshFiles import state_space, to_points, to_vtk
+from MeshFiles import write as write_data
+from Volumes import begin_test, call, make_ball, write_vti
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE, VTK_VERTEX, vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkIOGeometry import vtkSTLReader, vtkSTLWriter
 from vtkmodules.vtkIOPLY import vtkPLYReader, vtkPLYWriter
 from vtkmodules.vtkIOXML import (vtkXMLPolyDataReader, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridReader,
                                  vtkXMLUnstructuredGridWriter)
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Points")
+program, path = begin_test("Points")
 flip = numpy.array([-1.0, -1.0, 1.0])
-
-
-def path(name):
-    return os.path.join(folder, name)
 
 
 def write(name, text):
@@ -40,39 +35,25 @@ def read(name):
 def write_geometry(name, points, space=None, vectors=None, normals=None):
     """Writes points with a vertex cell for each. vectors, normals: values of active arrays."""
     data = vtkPolyData() if name.endswith(".vtp") else vtkUnstructuredGrid()
-    places = vtkPoints()
-    places.SetData(numpy_to_vtk(numpy.array(points, dtype=float).reshape(-1, 3), deep=True))
-    data.SetPoints(places)
+    data.SetPoints(to_points(numpy.array(points, dtype=float).reshape(-1, 3)))
     data.AllocateExact(len(points), 1) if name.endswith(".vtp") else data.Allocate(len(points))
     for i in range(len(points)):
         data.InsertNextCell(VTK_VERTEX, 1, [i])
-    numbers = numpy_to_vtk(numpy.arange(len(points)), deep=True)
-    numbers.SetName("number")
-    data.GetPointData().AddArray(numbers)
+    data.GetPointData().AddArray(to_vtk("number", numpy.arange(len(points))))
     for values, add, title in ((vectors, data.GetPointData().SetVectors, "velocity"),
                                (normals, data.GetPointData().SetNormals, "Normals")):
         if values is not None:
-            array = numpy_to_vtk(values, deep=True)
-            array.SetName(title)
-            add(array)
+            add(to_vtk(title, values))
     if space:
-        text = vtkStringArray()
-        text.SetName("SPACE")
-        text.InsertNextValue(space)
-        data.GetFieldData().AddArray(text)
+        state_space(data, space)
     writer = vtkXMLPolyDataWriter() if name.endswith(".vtp") else vtkXMLUnstructuredGridWriter()
-    writer.SetDataModeToBinary()
-    writer.SetInputData(data)
-    writer.SetFileName(path(name))
-    assert writer.Write(), name
+    write_data(writer, data, path(name), SetDataMode=1)
 
 
 def write_surface(name, points, space=None):
     """Writes triangles of three consecutive points each. A .ply file also has colors."""
     surface = vtkPolyData()
-    places = vtkPoints()
-    places.SetData(numpy_to_vtk(numpy.array(points, dtype=numpy.float32), deep=True))
-    surface.SetPoints(places)
+    surface.SetPoints(to_points(numpy.array(points, dtype=numpy.float32)))
     surface.AllocateExact(len(points), 3)
     for i in range(0, len(points) - 2):
         surface.InsertNextCell(VTK_TRIANGLE, 3, [i, i + 1, i + 2])
@@ -83,9 +64,8 @@ def write_surface(name, points, space=None):
         writer.SetHeader(f"3D Slicer output. SPACE={space}" if space else "made by a test")
         writer.SetFileTypeToBinary()
     else:
-        colors = numpy_to_vtk(numpy.arange(3 * len(points), dtype=numpy.uint8).reshape(-1, 3), deep=True)
-        colors.SetName("colors")
-        surface.GetPointData().AddArray(colors)
+        colors = numpy.arange(3 * len(points), dtype=numpy.uint8).reshape(-1, 3)
+        surface.GetPointData().AddArray(to_vtk("colors", colors))
         writer.SetArrayName("colors")
         if space:
             writer.AddComment(f"SPACE={space}")
@@ -280,8 +260,8 @@ assert list(result) == list(mixed) and result == mixed
 assert read("moved-mixed.mrk.json").count("\n") == read("mixed.mrk.json").count("\n")
 
 # Transforms of SimpleITK map the moved points back, in all formats and worlds.
-Readers.run("Maps.py", "make", folder)
-Readers.run("Points.py", "make", folder)
+Readers.run("Maps.py", "make", path())
+Readers.run("Points.py", "make", path())
 x, y, z = numpy.meshgrid(*(numpy.linspace(-0.5, 0.5, n) for n in (5, 4, 3)), indexing="ij")
 steps = numpy.stack([x.ravel() * 14, y.ravel() * 15, z.ravel() * 16], axis=1) + 0.123456789
 
@@ -324,7 +304,7 @@ for volume, of_volume in (("moving.nii.gz", "RAS"), ("moving.mha", "LPS"), ("mov
             ends.append(read_ends * (flip if name.startswith("RAS") else 1))
         numpy.save(path("starts.npy"), numpy.concatenate([start] * len(ends)))
         numpy.save(path("ends.npy"), numpy.concatenate(ends))
-        Readers.run("Points.py", "check", folder, transform, "starts.npy", "ends.npy")
+        Readers.run("Points.py", "check", path(), transform, "starts.npy", "ends.npy")
 
 # Surfaces: with a comment that states their world, or in that of the volume. The output has the same triangles, colors
 # and comment, in single precision.
@@ -346,7 +326,7 @@ for volume, of_volume in (("moving.nii.gz", flip), ("moving.mha", 1)):
     for end in ends:
         numpy.save(path("starts.npy"), start)
         numpy.save(path("ends.npy"), end)
-        Readers.run("Points.py", "check", folder, "affine.tfm", "starts.npy", "ends.npy")
+        Readers.run("Points.py", "check", path(), "affine.tfm", "starts.npy", "ends.npy")
 
 # Vectors are multiplied by the inverse of the transform's matrix, and normals by its transpose.
 parameters = re.findall(r"^Parameters: (.*)", read("affine.tfm"), re.M)[0].split()
@@ -371,12 +351,12 @@ def save_ends(*options, warnings=()):
 
 
 save_ends("--field", path("forward.mha"))
-Readers.run("Points.py", "field", folder, "forward.mha", "end.npy", "start.npy", "0.001")
+Readers.run("Points.py", "field", path(), "forward.mha", "end.npy", "start.npy", "0.001")
 # The inverse field that deform-volume writes maps moved points back. Its vectors are rounded to 1/512 voxel on each
 # axis. Between voxels it is exact because the deformation is linear.
 save_ends("--field", path("linear.mha"), "--inverse-field", path("inverse.mha"),
           warnings=["The inverse field is 0 at"])
-Readers.run("Points.py", "field", folder, "inverse.mha", "start.npy", "end.npy", "0.006")
+Readers.run("Points.py", "field", path(), "inverse.mha", "start.npy", "end.npy", "0.006")
 
 # Points follow the mesh of a lattice or a simulation: displacements of points at the centroids of tetrahedra are
 # interpolated between those of the nodes.

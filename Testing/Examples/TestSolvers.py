@@ -2,23 +2,15 @@
 """Tests that deform-volume reads results as FEBio, FEBio Studio and SOFA write them, with the options of
 Documents/solvers.md, and reports errors for wrong options, wrong units and changed meshes.
 Usage: TestSolvers.py PROGRAM FOLDER"""
-import os
-import sys
 
 import Messages
 import numpy
 from MeshFiles import make_moves, make_places, make_tetrahedra, make_unstructured, write, write_collection
 from SolverFiles import find_edges, write_febio, write_febio_studio, write_sofa
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Solvers")
-
-
-def path(name):
-    return os.path.join(folder, name)
-
+program, path = begin_test("Solvers")
 
 # A volume around the origin of the world, as scans usually are.
 volume = make_ball(origin=(-12.0, -16.0, -18.0))

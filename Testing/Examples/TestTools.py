@@ -1,26 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests that deform-volume cuts, carves and pulls as the filters do, and reports errors of its tools.
 Usage: TestTools.py PROGRAM FOLDER"""
-import os
-import sys
+import functools
 
 import deformvolume_vtk
+import Messages
 import numpy
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
-from vtkmodules.util.numpy_support import numpy_to_vtk
-from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData, vtkSphere
-from vtkmodules.vtkFiltersSources import vtkPlaneSource
+from MeshFiles import make_handles, make_sheet, to_vtk, write
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkSphere
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Tools")
-
-
-def path(name):
-    return os.path.join(folder, name)
-
-
+program, path = begin_test("Tools")
 volume = make_ball()
 write_vti(volume, path("in.vti"))
 bounds = volume.GetBounds()
@@ -28,17 +19,9 @@ middle = [0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]) for axis in range(3)]
 
 
 def write_sheet(name, x):
-    plane = vtkPlaneSource()
-    plane.SetOrigin(x, bounds[2] - 1, bounds[4] - 1)
-    plane.SetPoint1(x, bounds[3] + 1, bounds[4] - 1)
-    plane.SetPoint2(x, bounds[2] - 1, bounds[5] + 1)
-    plane.Update()
-    writer = vtkXMLPolyDataWriter()
-    writer.SetInputData(plane.GetOutput())
-    writer.SetDataModeToBinary()
-    writer.SetFileName(path(name))
-    assert writer.Write()
-    return plane.GetOutput()
+    plane = make_sheet(bounds, x)
+    write(vtkXMLPolyDataWriter(), plane, path(name), SetDataMode=1)
+    return plane
 
 
 sheet = write_sheet("sheet.vtp", middle[0] + 0.3)
@@ -48,13 +31,7 @@ pull_text = f"{middle[0] - 6},{middle[1]},{middle[2]},3,1,-2,2.5"
 pull = ("--model", "chainmail", "--pull", pull_text)
 
 
-def fails(code, expected, *arguments):
-    output, errors = call(program, path("in.vti"), *arguments, "-o", path("o.vti"), code=code)
-    assert output == "", output
-    assert errors.startswith("deform-volume: "), errors
-    assert expected in errors, f"{expected} is not in {errors}"
-    assert not os.path.exists(path("o.vti"))
-
+fails = functools.partial(Messages.refuses, program, path)
 
 # Misuse.
 fails(1, "no such file", "--cut", path("none.vtp"))
@@ -82,9 +59,7 @@ def deform(image, field=None):
         field.SetDimensions(2, 2, 2)
         field.SetOrigin(*(bounds[2 * axis] - 5 for axis in range(3)))
         field.SetSpacing(*(bounds[2 * axis + 1] - bounds[2 * axis] + 10 for axis in range(3)))
-        zeros = numpy_to_vtk(numpy.zeros((8, 3), numpy.float32), deep=True)
-        zeros.SetName("Displacement")
-        field.GetPointData().AddArray(zeros)
+        field.GetPointData().AddArray(to_vtk("Displacement", numpy.zeros((8, 3), numpy.float32)))
     result = deformvolume_vtk.vtkDeformVolumeFilter()
     result.SetInputData(image)
     result.SetDeformationData(field)
@@ -141,19 +116,11 @@ _, covered = check("carved.vti", deform(carver.GetOutput()), *cut, *carve)
 assert 20 < (covered == 0).sum() < 1000, (covered == 0).sum()
 
 # A volume that is cut, carved, and pulled by ChainMail.
-handles = vtkPolyData()
-points = vtkPoints()
-points.SetDataTypeToDouble()
-numbers = [float(number) for number in pull_text.split(",")]
-points.InsertNextPoint(*(numbers[axis] + numbers[3 + axis] for axis in range(3)))
-handles.SetPoints(points)
-rest = numpy_to_vtk(numpy.array([numbers[:3]]), deep=True)
-rest.SetName("RestPosition")
-handles.GetPointData().AddArray(rest)
+handles, radius = make_handles(pull_text)
 chain_mail = deformvolume_vtk.vtkChainMailDeformation()
 chain_mail.SetInputConnection(carver.GetOutputPort())
 chain_mail.SetHandlesData(handles)
-chain_mail.SetHandleRadius(numbers[6])
+chain_mail.SetHandleRadius(radius)
 chain_mail.Update()
 assert chain_mail.GetNumberOfMovedVoxels() > 50, chain_mail.GetNumberOfMovedVoxels()
 output, _ = check("pulled.vti", deform(carver.GetOutput(), chain_mail.GetOutput()), *cut, *carve,

@@ -3,18 +3,12 @@
 Usage: TestTransforms.py PROGRAM FOLDER"""
 import itertools
 import os
-import sys
 
 import numpy
 import Readers
-from Volumes import call, get_values, make_ball, make_folder, read_vti, write_vti
+from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "Transforms")
-
-
-def path(name):
-    return os.path.join(folder, name)
+program, path = begin_test("Transforms")
 
 
 def write(name, text):
@@ -22,7 +16,7 @@ def write(name, text):
         file.write(text)
 
 
-Readers.run("Transforms.py", folder)
+Readers.run("Transforms.py", path())
 
 
 # A file that cannot be used is an error that states the reason, and a program that converts the file.

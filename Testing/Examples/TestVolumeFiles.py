@@ -3,22 +3,15 @@
 programs read the files that it writes. Usage: TestVolumeFiles.py PROGRAM FOLDER"""
 import json
 import os
-import sys
 
 import numpy
 import Readers
-from Volumes import call, get_values, make_ball, make_folder, write_vti
+from Volumes import begin_test, call, get_values, make_ball, write_vti
 
-program = sys.argv[1]
-folder = make_folder(sys.argv[2], "VolumeFiles")
-
-
-def path(name):
-    return os.path.join(folder, name)
-
+program, path = begin_test("VolumeFiles")
 
 # Files of other programs, and the files that deform-volume writes from them.
-Readers.run("VolumeFiles.py", folder)
+Readers.run("VolumeFiles.py", path())
 written_again = {f"{kind}.{suffix}" for kind, suffix in (
     ("uint8", "mha"), ("int8", "mhd"), ("uint16", "nii"), ("int16", "nii.gz"), ("uint32", "mha"),
     ("int32", "mhd"), ("uint64", "nii"), ("int64", "nii.gz"), ("float32", "mha"), ("float64", "mhd"),
@@ -29,13 +22,13 @@ written_again = {f"{kind}.{suffix}" for kind, suffix in (
     ("unit1", "nii"), ("two", "nii.gz"), ("RAS", "nhdr"), ("las", "nrrd"))}
 suffixes = ("nii", "nii.gz", "mha", "mhd", "nrrd", "nhdr")
 written = []
-for case in Readers.load(folder, "cases.json"):
+for case in Readers.load(path(), "cases.json"):
     outputs = []
     if case["file"] in written_again:
         outputs = [path(f"{case['file']}.again.{suffix}") for suffix in suffixes]
         written.append({**case, "outputs": outputs, "padding": 0})
         written_again.remove(case["file"])
-    Readers.check(program, folder, case, *outputs)
+    Readers.check(program, path(), case, *outputs)
 assert not written_again, written_again
 
 # A volume whose extent does not start at 0. The world of .vti files is not known, so coordinates are not converted.
@@ -67,7 +60,7 @@ written.append({**[case for case in written if case["file"] == "both-mirrored.ni
                 "outputs": [path("same.again.nii.gz")]})
 with open(path("written.json"), "w", encoding="utf-8") as file:
     json.dump(written, file)
-Readers.run("WrittenVolumeFiles.py", folder)
+Readers.run("WrittenVolumeFiles.py", path())
 
 # NIfTI has no vectors of two real components.
 _, errors = call(program, path("time-vectors.nii"), "--frame", "1", *Readers.still, "-o",

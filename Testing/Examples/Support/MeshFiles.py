@@ -11,11 +11,13 @@ from vtkmodules.vtkCommonDataModel import (
     VTK_HEXAHEDRON,
     VTK_TETRA,
     vtkMultiBlockDataSet,
+    vtkPolyData,
     vtkRectilinearGrid,
     vtkStructuredGrid,
     vtkUnstructuredGrid,
 )
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkFiltersSources import vtkPlaneSource
 from vtkmodules.vtkIOExodus import vtkExodusIIWriter
 
 SIZE = (3, 4, 5)
@@ -102,6 +104,25 @@ def make_blocks(*parts):
         blocks.SetBlock(number, part)
         blocks.GetMetaData(number).Set(vtkMultiBlockDataSet.NAME(), name)
     return blocks
+
+
+def make_sheet(bounds, x):
+    """Returns a rectangle, perpendicular to x, which is larger than a box."""
+    plane = vtkPlaneSource()
+    plane.SetOrigin(x, bounds[2] - 1, bounds[4] - 1)
+    plane.SetPoint1(x, bounds[3] + 1, bounds[4] - 1)
+    plane.SetPoint2(x, bounds[2] - 1, bounds[5] + 1)
+    plane.Update()
+    return plane.GetOutput()
+
+
+def make_handles(pull):
+    """Returns the handle of an argument of --pull, and its radius."""
+    numbers = numpy.array(pull.split(","), float)
+    handles = vtkPolyData()
+    handles.SetPoints(to_points([numbers[:3] + numbers[3:6]]))
+    handles.GetPointData().AddArray(to_vtk("RestPosition", [numbers[:3]]))
+    return handles, numbers[6]
 
 
 def state_space(data, space):

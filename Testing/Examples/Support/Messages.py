@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Checks the wording of messages of a program."""
+import os
 import re
 
 from Volumes import call
@@ -10,7 +11,7 @@ CODE = re.compile(r"\bvtk(?!GhostType|ValidPointMask)[A-Z]\w*|::|\b[A-Za-z]\w*\(
                   r"\b[A-Z]{4,}_[A-Z]+\b|\b[A-Z][a-z]+[A-Z][a-z]\w*|input port|\b[Cc]onnect\b|"
                   r"\bREQUEST\b")
 NAMES = ("TetGen", "ParaView", "ChainMail", "Mach", "MetaImage", "OpenCL", "DEFORMVOLUME_TETGEN",
-         "TMPDIR", "STLReader", "NumberOfCells")
+         "TMPDIR", "STLReader", "NumberOfCells", "NREG_TRANS", "NiftyReg")
 
 
 def check_words(text):
@@ -19,9 +20,9 @@ def check_words(text):
     assert not CODE.search(words), f"{CODE.search(words).group()} in {text}"
 
 
-def fails(program, code, expected, *arguments, warnings=0):
+def fails(program, code, expected, *arguments, warnings=0, environment=None):
     """Calls a program, which has to fail with a message of one line. expected: texts in this line."""
-    output, errors = call(program, *arguments, code=code, quiet=True)
+    output, errors = call(program, *arguments, code=code, quiet=True, environment=environment)
     print("  ", errors.strip())
     assert output == "", output
     assert errors.splitlines()[-1].startswith("deform-volume: "), errors
@@ -30,6 +31,12 @@ def fails(program, code, expected, *arguments, warnings=0):
     for text in [expected] if isinstance(expected, str) else expected:
         assert text in errors, f"{text} is not in {errors}"
     check_words(errors)
+
+
+def refuses(program, path, code, expected, *arguments, source="in.vti", warnings=0):
+    """Calls a program with a volume. It has to fail, and must not write an output."""
+    fails(program, code, expected, path(source), *arguments, "-o", path("o.vti"), warnings=warnings)
+    assert not os.path.exists(path("o.vti"))
 
 
 def warns(program, expected, *arguments):

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes, reads and writes small volumes, and calls programs."""
+import functools
 import os
+import shutil
 import subprocess
+import sys
 
 import numpy
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -53,13 +56,14 @@ def read_vti(path):
     return reader.GetOutput()
 
 
-def make_folder(parent, name):
+def begin_test(name):
+    """Returns the arguments of this script, the last of which is a folder. In its place returns a function path(file)
+    for the files of this test. They are in an empty folder therein, path()."""
+    *arguments, parent = sys.argv[1:]
     folder = os.path.join(parent, name)
-    os.makedirs(folder, exist_ok=True)
-    for file in os.listdir(folder):
-        if os.path.isfile(os.path.join(folder, file)):
-            os.remove(os.path.join(folder, file))
-    return folder
+    shutil.rmtree(folder, ignore_errors=True)
+    os.makedirs(folder)
+    return *arguments, functools.partial(os.path.join, folder)
 
 
 def call(*command, code=0, environment=None, quiet=False):
