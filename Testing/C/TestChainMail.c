@@ -5,6 +5,7 @@
  * vtkChainMailDeformation.
  */
 #include "Check.h"
+#include "Cube.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -18,27 +19,10 @@ enum
   MIDDLE = (6 * SIZE + 6) * SIZE + 6
 };
 
-static const double Spacing = 2.0;
-
-static dv_grid MakeGrid(void)
-{
-  dv_grid grid;
-  int axis = 0;
-  memset(&grid, 0, sizeof(grid));
-  grid.struct_size = sizeof(grid);
-  for (axis = 0; axis < 3; ++axis)
-  {
-    grid.extent[2 * axis + 1] = SIZE - 1;
-    grid.spacing[axis] = Spacing;
-    grid.direction[4 * axis] = 1.0;
-  }
-  return grid;
-}
-
 static dv_chainmail* MakeChainMail(void)
 {
   dv_chainmail* chainmail = NULL;
-  const dv_grid grid = MakeGrid();
+  const dv_grid grid = MakeCube(SIZE);
   CHECK(dv_chainmail_create(&grid, NULL, 0, &chainmail) == DV_OK);
   return chainmail;
 }
@@ -92,7 +76,7 @@ static void TestNull(void)
 {
   dv_chainmail* chainmail = NULL;
   dv_deformer* deformer = NULL;
-  const dv_grid grid = MakeGrid();
+  const dv_grid grid = MakeCube(SIZE);
   const dv_chainmail_materials materials = MakeMaterials();
   const dv_chainmail_request request = MakeRequest();
   const float* displacements = NULL;
@@ -210,16 +194,16 @@ static void TestWrong(void)
 {
   const double infinity = HUGE_VAL;
   dv_chainmail* chainmail = NULL;
-  dv_grid grid = MakeGrid();
+  dv_grid grid = MakeCube(SIZE);
   dv_chainmail_request request = MakeRequest();
   dv_chainmail_report report;
 
   grid.extent[3] = 0;
   REFUSED(dv_chainmail_create(&grid, NULL, 0, &chainmail), "one voxel only on axis y");
-  grid = MakeGrid();
+  grid = MakeCube(SIZE);
   grid.spacing[0] = 0.0;
   REFUSED(dv_chainmail_create(&grid, NULL, 0, &chainmail), "spacing");
-  grid = MakeGrid();
+  grid = MakeCube(SIZE);
   REFUSED(dv_chainmail_create(&grid, "no such device", 0, &chainmail), "no such device");
   REFUSED(dv_chainmail_create(&grid, NULL, 1, &chainmail), "memory");
   CHECK(chainmail == NULL);
@@ -381,7 +365,7 @@ static void TestDeform(void)
   dv_chainmail* chainmail = MakeChainMail();
   dv_chainmail_request request = MakeRequest();
   dv_deformer* deformer = NULL;
-  const dv_grid grid = MakeGrid();
+  const dv_grid grid = MakeCube(SIZE);
   static float values[VOXELS];
   static float output[VOXELS];
   static int8_t coverage[VOXELS];

@@ -5,6 +5,7 @@
  * with those of the filter.
  */
 #include "Check.h"
+#include "Cube.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -25,21 +26,6 @@ static double Corners[8][3];
 static float Displacements[8][3];
 static int64_t Tetrahedra[5][4] = { { 0, 1, 2, 4 }, { 3, 2, 1, 7 }, { 5, 4, 7, 1 }, { 6, 7, 4, 2 },
   { 1, 2, 4, 7 } };
-
-static dv_grid MakeGrid(void)
-{
-  dv_grid grid;
-  int axis = 0;
-  memset(&grid, 0, sizeof(grid));
-  grid.struct_size = sizeof(grid);
-  for (axis = 0; axis < 3; ++axis)
-  {
-    grid.extent[2 * axis + 1] = SIZE - 1;
-    grid.spacing[axis] = 2.0;
-    grid.direction[4 * axis] = 1.0;
-  }
-  return grid;
-}
 
 static dv_array MakeArray(void)
 {
@@ -81,7 +67,7 @@ static dv_request MakeRequest(void)
 static dv_deformer* MakeDeformer(void)
 {
   dv_deformer* deformer = NULL;
-  const dv_grid grid = MakeGrid();
+  const dv_grid grid = MakeCube(SIZE);
   const dv_array array = MakeArray();
   const dv_mesh mesh = MakeMesh();
   dv_output output;
@@ -100,7 +86,7 @@ static dv_deformer* MakeDeformer(void)
 static void TestNull(void)
 {
   dv_deformer* deformer = NULL;
-  dv_grid grid = MakeGrid();
+  dv_grid grid = MakeCube(SIZE);
   const dv_request request = MakeRequest();
   uint64_t bytes = 0;
   REFUSED(dv_create(NULL), "null");
@@ -141,7 +127,7 @@ static void TestNull(void)
 static void TestMissing(void)
 {
   dv_deformer* deformer = NULL;
-  dv_grid grid = MakeGrid();
+  dv_grid grid = MakeCube(SIZE);
   const dv_array array = MakeArray();
   const dv_mesh mesh = MakeMesh();
   const dv_request request = MakeRequest();
@@ -163,7 +149,7 @@ static void TestWrong(void)
 {
   const double infinity = HUGE_VAL;
   dv_deformer* deformer = MakeDeformer();
-  dv_grid grid = MakeGrid();
+  dv_grid grid = MakeCube(SIZE);
   dv_array array = MakeArray();
   dv_mesh mesh = MakeMesh();
   dv_request request = MakeRequest();
@@ -192,26 +178,26 @@ static void TestWrong(void)
   REFUSED(dv_deform(deformer, &request, &report), "struct_size of the report");
 
   /* Grids. */
-  grid = MakeGrid();
+  grid = MakeCube(SIZE);
   grid.extent[3] = -1;
   REFUSED(dv_set_volume(deformer, &grid), "on axis y is 0 to -1");
   grid.extent[3] = 2147483647;
   REFUSED(dv_set_volume(deformer, &grid), "2^29");
-  grid = MakeGrid();
+  grid = MakeCube(SIZE);
   grid.extent[5] = 0;
   REFUSED(dv_set_volume(deformer, &grid), "one voxel only on axis z");
   grid.extent[1] = grid.extent[3] = grid.extent[5] = 500000000;
   REFUSED(dv_set_volume(deformer, &grid), "2^48");
-  grid = MakeGrid();
+  grid = MakeCube(SIZE);
   grid.origin[1] = infinity;
   REFUSED(dv_set_volume(deformer, &grid), "origin");
   REFUSED(dv_set_reference(deformer, &grid), "origin of the reference grid");
-  grid = MakeGrid();
+  grid = MakeCube(SIZE);
   grid.spacing[2] = 0.0;
   REFUSED(dv_set_volume(deformer, &grid), "spacing of the volume on axis z is 0");
   grid.spacing[2] = infinity - infinity;
   REFUSED(dv_set_volume(deformer, &grid), "spacing");
-  grid = MakeGrid();
+  grid = MakeCube(SIZE);
   grid.direction[4] = 0.0;
   REFUSED(dv_set_volume(deformer, &grid), "no inverse");
   grid.direction[4] = infinity - infinity;
@@ -320,7 +306,7 @@ static void TestWrong(void)
   CHECK(dv_set_displacements(deformer, DV_FLOAT32, 8, Displacements) == DV_OK);
 
   /* Fields. */
-  grid = MakeGrid();
+  grid = MakeCube(SIZE);
   memset(&field, 0, sizeof(field));
   REFUSED(dv_set_field(deformer, &field), "struct_size");
   field.struct_size = sizeof(field);

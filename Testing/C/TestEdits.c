@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
  * Cutting and carving in C: misuse and error messages, numbers of tetrahedra in closed form, undo,
- * the output, and abort. Testing/Cxx/C/TestCEdits.cxx compares all masks with those of the filters.
+ * and abort. Testing/Cxx/C/TestCEdits.cxx compares all masks and the outputs with those of the
+ * filters.
  */
 #include "Check.h"
+#include "Cube.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,27 +19,10 @@ enum
   CELLS = 11 * 11 * 11
 };
 
-static const double Spacing = 2.0;
-
-static dv_grid MakeGrid(void)
-{
-  dv_grid grid;
-  int axis = 0;
-  memset(&grid, 0, sizeof(grid));
-  grid.struct_size = sizeof(grid);
-  for (axis = 0; axis < 3; ++axis)
-  {
-    grid.extent[2 * axis + 1] = SIZE - 1;
-    grid.spacing[axis] = Spacing;
-    grid.direction[4 * axis] = 1.0;
-  }
-  return grid;
-}
-
 static dv_deformer* MakeDeformer(void)
 {
   dv_deformer* deformer = NULL;
-  const dv_grid grid = MakeGrid();
+  const dv_grid grid = MakeCube(SIZE);
   CHECK(dv_create(&deformer) == DV_OK);
   CHECK(dv_set_volume(deformer, &grid) == DV_OK);
   return deformer;
@@ -366,7 +351,7 @@ static void TestCarve(void)
   const dv_edit minimal = MakeEdit(0, DV_CARVE_MINIMAL);
   const dv_edit smooth = MakeEdit(1, 0);
   const double center[3] = { 11.0, 11.0, 11.0 };
-  dv_grid grid = MakeGrid();
+  dv_grid grid = MakeCube(SIZE);
   static int64_t labels[VOXELS];
   dv_array array;
   dv_masks masks;
@@ -435,45 +420,6 @@ static void TestCarve(void)
   dv_destroy(deformer);
 }
 
-/* The output has a hole after an edit, and none after undo. */
-static void TestDeform(void)
-{
-  dv_deformer* deformer = MakeDeformer();
-  const dv_surface box = MakeBox();
-  static uint8_t values[VOXELS];
-  static uint8_t output[VOXELS];
-  static int8_t coverage[VOXELS];
-  void* outputs[1];
-  dv_array array;
-  dv_request request;
-  dv_report report;
-  memset(&array, 0, sizeof(array));
-  array.struct_size = sizeof(array);
-  array.data = values;
-  array.type = DV_UINT8;
-  array.components = 1;
-  outputs[0] = output;
-  memset(&request, 0, sizeof(request));
-  request.struct_size = sizeof(request);
-  request.number_of_outputs = 1;
-  request.outputs = outputs;
-  request.coverage = coverage;
-  report.struct_size = sizeof(report);
-  CHECK(dv_set_arrays(deformer, 1, &array) == DV_OK);
-  CHECK(dv_deform(deformer, &request, &report) == DV_OK);
-  CHECK(report.number_of_covered_voxels == VOXELS);
-  CHECK(dv_carve_surface(deformer, &box, NULL) == DV_OK);
-  CHECK(dv_deform(deformer, &request, &report) == DV_OK);
-  /* The voxels inside the box, 4 to 6 on each axis, and some on its faces are not covered. */
-  CHECK(coverage[(5 * SIZE + 5) * SIZE + 5] == 0);
-  CHECK(report.number_of_covered_voxels <= VOXELS - 3 * 3 * 3 &&
-    report.number_of_covered_voxels >= VOXELS - 5 * 5 * 5);
-  CHECK(dv_undo_edit(deformer) == DV_OK);
-  CHECK(dv_deform(deformer, &request, &report) == DV_OK);
-  CHECK(report.number_of_covered_voxels == VOXELS);
-  dv_destroy(deformer);
-}
-
 static int32_t Abort(double fraction, void* user)
 {
   CHECK(fraction >= 0.0 && fraction <= 1.0);
@@ -508,7 +454,6 @@ int main(void)
   TestWrong();
   TestCut();
   TestCarve();
-  TestDeform();
   TestAbort();
   printf("%d failures\n", Failures);
   return Failures != 0;
