@@ -239,6 +239,7 @@ std::vector<TightVoxel> FindTightVoxels(const TightMesh& mesh)
   std::vector<TightVoxel> voxels(static_cast<std::size_t>(GetNumberOfPoints(e)));
   std::vector<double> deepest(voxels.size(), -std::numeric_limits<double>::infinity());
   std::vector<int> holding(voxels.size(), 0);
+  std::vector<std::array<glm::dvec3, 4>> deformed;
   for (const Tetrahedron& tetrahedron : mesh.Tetrahedra)
   {
     std::array<glm::dvec3, 4> q;
@@ -248,6 +249,7 @@ std::vector<TightVoxel> FindTightVoxels(const TightMesh& mesh)
       q[k] = mesh.GetDeformed(tetrahedron[k]);
       rest[k] = mesh.Points[static_cast<std::size_t>(tetrahedron[k])];
     }
+    deformed.push_back(q);
     int first[3];
     int last[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -309,13 +311,16 @@ std::vector<TightVoxel> FindTightVoxels(const TightMesh& mesh)
   // Points around a voxel near a face decide whether it is near the surface of the mesh.
   const auto isHeld = [&](const glm::dvec3& point)
   {
-    return std::any_of(mesh.Tetrahedra.begin(), mesh.Tetrahedra.end(),
-      [&](const Tetrahedron& tetrahedron)
+    return std::any_of(deformed.begin(), deformed.end(),
+      [&](const std::array<glm::dvec3, 4>& q)
       {
-        std::array<glm::dvec3, 4> q;
-        for (std::size_t k = 0; k < 4; ++k)
+        for (int axis = 0; axis < 3; ++axis) // most tetrahedra are far away
         {
-          q[k] = mesh.GetDeformed(tetrahedron[k]);
+          const auto ends = std::minmax({ q[0][axis], q[1][axis], q[2][axis], q[3][axis] });
+          if (point[axis] < ends.first - Margin || point[axis] > ends.second + Margin)
+          {
+            return false;
+          }
         }
         double weights[4];
         return FindWeights(q, point, weights) && *std::min_element(weights, weights + 4) >= -1e-9;
@@ -343,25 +348,15 @@ std::vector<TightVoxel> FindTightVoxels(const TightMesh& mesh)
   return voxels;
 }
 
-std::vector<float> MakeNoise(const TightMesh& mesh)
+UsualArrays MakeTightArrays(const TightMesh& mesh)
 {
   std::mt19937 random(5);
-  std::vector<float> noise(static_cast<std::size_t>(mesh.GetNumberOfVoxels()));
-  for (float& value : noise)
+  UsualArrays arrays(static_cast<std::size_t>(mesh.GetNumberOfVoxels()));
+  for (float& value : arrays.Floats)
   {
     value = std::uniform_real_distribution<float>(0.0F, 1.0F)(random);
   }
-  return noise;
-}
-
-std::vector<std::int16_t> MakeLabels(const TightMesh& mesh)
-{
-  std::vector<std::int16_t> labels(static_cast<std::size_t>(mesh.GetNumberOfVoxels()));
-  for (std::size_t i = 0; i < labels.size(); ++i)
-  {
-    labels[i] = static_cast<std::int16_t>(1 + i * 7919 % 30011);
-  }
-  return labels;
+  return arrays;
 }
 
 void SetMasks(VolumeDeformer& deformer, const TightMesh& mesh)
@@ -373,21 +368,9 @@ void SetMasks(VolumeDeformer& deformer, const TightMesh& mesh)
 
 void Load(VolumeDeformer& deformer, const TightMesh& mesh, StaticMappingForm form)
 {
-  const std::vector<float> noise = MakeNoise(mesh);
-  const std::vector<std::int16_t> labels = MakeLabels(mesh);
+  const UsualArrays arrays = MakeTightArrays(mesh);
   deformer.SetVoxelGrid(mesh.Grid);
-  VolumeArray values;
-  values.Data = noise.data();
-  values.Type = ElementType::Float32;
-  values.Components = 1;
-  values.Background = -1.0;
-  VolumeArray names;
-  names.Data = labels.data();
-  names.Type = ElementType::Int16;
-  names.Components = 1;
-  names.Categorical = true;
-  names.Background = 0.0;
-  deformer.SetArrays({ values, names });
+  deformer.SetArrays(arrays.Get());
   SetMasks(deformer, mesh);
   const StaticMapping mapping = BuildStaticMapping(
     mesh.Grid.VertexExtent, glm::dvec3(1.0), mesh.Points, mesh.Tetrahedra, false, form);
@@ -409,30 +392,35 @@ TightOutput DeformTight(VolumeDeformer& deformer, const TightMesh& mesh, Resampl
 {
   TightOutput output;
   const auto count = static_cast<std::size_t>(GetNumberOfPoints(mesh.Output));
+  output.Shorts.assign(count, -7);
   output.Values.assign(count, -7.0F);
-  output.Labels.assign(count, -7);
+  output.Labels.assign(2 * count, 7);
   output.Coverage.assign(count, 7);
   DeformRequest request;
   request.Method = method;
   request.Interpolation = interpolation;
   request.OutputExtent = mesh.Output;
-  request.Outputs = { output.Values.data(), output.Labels.data() };
+  request.Outputs = { output.Shorts.data(), output.Values.data(), output.Labels.data() };
   request.Coverage = output.Coverage.data();
   request.Incremental = true;
   if (last)
   {
-    request.LastOutputs = { last->Values.data(), last->Labels.data() };
+    request.LastOutputs = { last->Shorts.data(), last->Values.data(), last->Labels.data() };
     request.LastCoverage = last->Coverage.data();
   }
   output.Report = deformer.Deform(request);
   return output;
 }
 
-void ExpectTight(const TightMesh& mesh, const TightOutput& output, double bound)
+namespace
 {
-  const std::vector<TightVoxel> voxels = FindTightVoxels(mesh);
-  const std::vector<float> noise = MakeNoise(mesh);
-  const std::vector<std::int16_t> labels = MakeLabels(mesh);
+
+void CompareTight(const std::vector<TightVoxel>& voxels, const UsualArrays& arrays,
+  const TightOutput& output, double bound)
+{
+  // Both labels of a voxel as one number.
+  const auto getLabels = [](const std::vector<std::uint16_t>& labels, std::size_t voxel)
+  { return labels[2 * voxel] << 16 | labels[2 * voxel + 1]; };
   std::size_t wrongCoverage = 0;
   std::size_t wrongValues = 0;
   std::size_t wrongLabels = 0;
@@ -451,8 +439,8 @@ void ExpectTight(const TightMesh& mesh, const TightOutput& output, double bound)
     wrongCoverage += voxel.Covered != output.Coverage[i] ? 1 : 0;
     if (voxel.Covered == 0 && output.Coverage[i] == 0)
     {
-      wrongValues += output.Values[i] != -1.0F ? 1 : 0;
-      wrongLabels += output.Labels[i] != 0 ? 1 : 0;
+      wrongValues += output.Values[i] != 2.0F ? 1 : 0;
+      wrongLabels += getLabels(output.Labels, i) != (12 << 16 | 12) ? 1 : 0;
     }
     if (voxel.Covered != 1 || output.Coverage[i] != 1)
     {
@@ -461,15 +449,16 @@ void ExpectTight(const TightMesh& mesh, const TightOutput& output, double bound)
     double value = 0.0;
     double best = -1.0;
     double second = -1.0;
-    std::int16_t label = 0;
+    int label = 0;
     for (std::size_t k = 0; k < 4; ++k)
     {
-      value += voxel.Weights[k] * noise[static_cast<std::size_t>(voxel.Voxels[k])];
+      const auto vertex = static_cast<std::size_t>(voxel.Voxels[k]);
+      value += voxel.Weights[k] * arrays.Floats[vertex];
       if (voxel.Weights[k] > best)
       {
         second = best;
         best = voxel.Weights[k];
-        label = labels[static_cast<std::size_t>(voxel.Voxels[k])];
+        label = getLabels(arrays.Labels, vertex);
       }
       else
       {
@@ -479,7 +468,7 @@ void ExpectTight(const TightMesh& mesh, const TightOutput& output, double bound)
     const double difference = std::abs(value - static_cast<double>(output.Values[i]));
     largest = std::max(largest, difference);
     wrongValues += difference > bound ? 1 : 0;
-    wrongLabels += best - second > bound && label != output.Labels[i] ? 1 : 0;
+    wrongLabels += best - second > bound && label != getLabels(output.Labels, i) ? 1 : 0;
   }
   EXPECT_EQ(wrongCoverage, 0U) << "voxels with wrong coverage, of " << voxels.size();
   EXPECT_EQ(wrongValues, 0U) << "voxels with a wrong value; the largest difference is " << largest;
@@ -490,10 +479,24 @@ void ExpectTight(const TightMesh& mesh, const TightOutput& output, double bound)
     std::count(output.Coverage.begin(), output.Coverage.end(), 1));
 }
 
+} // namespace
+
+void ExpectTight(const TightMesh& mesh, const std::vector<TightOutput>& outputs, double bound)
+{
+  const std::vector<TightVoxel> voxels = FindTightVoxels(mesh);
+  const UsualArrays arrays = MakeTightArrays(mesh);
+  for (std::size_t number = 0; number < outputs.size(); ++number)
+  {
+    SCOPED_TRACE(testing::Message() << "output " << number);
+    CompareTight(voxels, arrays, outputs[number], bound);
+  }
+}
+
 void ExpectSame(const TightOutput& one, const TightOutput& other)
 {
   EXPECT_EQ(one.Coverage, other.Coverage);
   EXPECT_EQ(one.Labels, other.Labels);
+  EXPECT_EQ(one.Shorts, other.Shorts);
   ASSERT_EQ(one.Values.size(), other.Values.size());
   EXPECT_EQ(
     std::memcmp(one.Values.data(), other.Values.data(), one.Values.size() * sizeof(float)), 0);

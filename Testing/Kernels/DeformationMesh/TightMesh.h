@@ -5,6 +5,7 @@
 #ifndef TightMesh_h
 #define TightMesh_h
 
+#include "DeformerCase.h"
 #include "StaticMapping.h"
 #include "VolumeDeformer.h"
 
@@ -62,15 +63,15 @@ std::vector<TightVoxel> FindTightVoxels(const TightMesh& mesh);
 /// The output of the engine.
 struct TightOutput
 {
+  std::vector<std::int16_t> Shorts;
   std::vector<float> Values;
-  std::vector<std::int16_t> Labels;
+  std::vector<std::uint16_t> Labels; // two per voxel
   std::vector<signed char> Coverage;
   deformvolume::DeformReport Report;
 };
 
-/// The arrays of the tests: noise, and labels without order.
-std::vector<float> MakeNoise(const TightMesh& mesh);
-std::vector<std::int16_t> MakeLabels(const TightMesh& mesh);
+/// The arrays of the tests. The floats are noise between 0 and 1.
+UsualArrays MakeTightArrays(const TightMesh& mesh);
 
 /// Sets the volume, its masks, the mesh and its displacements.
 void Load(deformvolume::VolumeDeformer& deformer, const TightMesh& mesh,
@@ -81,9 +82,9 @@ TightOutput DeformTight(deformvolume::VolumeDeformer& deformer, const TightMesh&
   const TightOutput* last = nullptr,
   deformvolume::Interpolation interpolation = deformvolume::Interpolation::Linear);
 
-/// Compares the coverage with the search. Where the map is affine, compares values and labels as
-/// well. bound: the largest allowed difference of values.
-void ExpectTight(const TightMesh& mesh, const TightOutput& output, double bound);
+/// Compares the coverage of outputs with the search. Where the map is affine, compares values and
+/// labels as well. bound: the largest allowed difference of values.
+void ExpectTight(const TightMesh& mesh, const std::vector<TightOutput>& outputs, double bound);
 
 /// Expects equality bit for bit.
 void ExpectSame(const TightOutput& one, const TightOutput& other);
