@@ -137,9 +137,8 @@ namespace
 
 void CheckTiny(Resampling method, const DeformerCase& tiny)
 {
-  const auto values = MakeRandomValues<std::uint16_t>(tiny.GetNumberOfVoxels(), 2);
-  const auto others = MakeRandomValues<float>(tiny.GetNumberOfVoxels(), 3);
-  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(others) };
+  const UsualArrays usual(tiny.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   VolumeDeformer deformer;
   Load(deformer, tiny, arrays, Route::Field);
   const reference::Result reference = ResampleByReference(tiny);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The resampler MeshRasterization, compared with a brute-force reference: misuse, coverage, values,
 // and that results do not depend on tiles, slabs and work-groups.
+#include "AllTypes.h"
 #include "DeviceNeeds.h"
 #include "RasterCase.h"
 
@@ -46,8 +47,8 @@ glm::dvec3 Wave(const glm::dvec3& index)
 TEST(MeshRasterization, MisuseLeavesTheDeformerUsable)
 {
   const RasterCase good = MakeRasterCase(Volume, 2, Wave, { { 1, 1, 1 } });
-  const auto values = MakeRandomValues<float>(good.GetNumberOfVoxels(), 1);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(good.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   VolumeDeformer deformer;
   deformer.SetDevice("");
   deformer.SetVoxelGrid(good.VoxelGrid);
@@ -97,15 +98,15 @@ TEST(MeshRasterization, MisuseLeavesTheDeformerUsable)
 TEST(MeshRasterization, AbortThrows)
 {
   const RasterCase good = MakeRasterCase(Volume, 2, Wave, { { 1, 1, 1 } });
-  const auto values = MakeRandomValues<float>(good.GetNumberOfVoxels(), 1);
+  const UsualArrays usual(good.GetNumberOfVoxels());
   VolumeDeformer deformer;
-  Load(deformer, good, { MakeArray(values) });
-  std::vector<float> output(GetNumberOfPoints(good.Output));
-  std::vector<signed char> coverage(output.size());
+  Load(deformer, good, usual.Get());
+  std::vector<signed char> coverage(GetNumberOfPoints(good.Output));
+  UsualArrays outputs(coverage.size());
   DeformRequest request;
   request.Method = Resampling::MeshRasterization;
   request.OutputExtent = good.Output;
-  request.Outputs = { output.data() };
+  request.Outputs = { outputs.Shorts.data(), outputs.Floats.data(), outputs.Labels.data() };
   request.Coverage = coverage.data();
   double last = -1.0;
   request.Progress = [&last](double done)
@@ -121,8 +122,7 @@ TEST(MeshRasterization, AbortThrows)
   EXPECT_THROW(deformer.Deform(request), Aborted);
 }
 
-// Random bits appear at the voxels that a shift by whole voxels gives: all types, with one
-// component, with two components, and as labels.
+// Random bits appear at the voxels that a shift by whole voxels gives.
 TEST(MeshRasterization, IdentityAndWholeShiftsAreBitExact)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -133,18 +133,8 @@ TEST(MeshRasterization, IdentityAndWholeShiftsAreBitExact)
       glm::dvec3(Volume[1], Volume[3], Volume[5]) + 2.7, 3,
       [shift](const glm::dvec3& index) { return index + glm::dvec3(shift, 2.0 * shift, 0.0); }, 0);
     const std::size_t voxels = static_cast<std::size_t>(moved.GetNumberOfVoxels());
-#define DECLARE(name, type, cl)                                                                    \
-  const auto one##name = MakeRandomBits<type>(voxels, 11);                                         \
-  const auto two##name = MakeRandomBits<type>(2 * voxels, 12);
-    DEFORMVOLUME_ELEMENT_TYPES(DECLARE)
-#undef DECLARE
-    std::vector<VolumeArray> arrays; // the same types as in ValuesOfAllTypesEqualReference
-#define ADD(name, type, cl)                                                                        \
-  arrays.push_back(MakeArray(one##name));                                                          \
-  arrays.push_back(MakeArray(two##name, 2));                                                       \
-  arrays.push_back(MakeArray(one##name, 1, true));
-    DEFORMVOLUME_ELEMENT_TYPES(ADD)
-#undef ADD
+    const AllTypes types(voxels, 0.0, true);
+    const std::vector<VolumeArray>& arrays = types.Arrays;
     for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
     {
       const Deformed deformed = LoadAndRun(moved, arrays, interpolation);
@@ -186,8 +176,9 @@ TEST(MeshRasterization, UndeformedAtAnotherSpacingKeepsTheVoxels)
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const RasterCase finer = MakeRasterCase(Volume, 3,
     [](const glm::dvec3& index) { return index * glm::dvec3(3, 2, 7); }, { { 3, 2, 7 } });
-  const auto values = MakeRandomBits<float>(finer.GetNumberOfVoxels(), 5);
-  const Deformed deformed = LoadAndRun(finer, { MakeArray(values) });
+  UsualArrays usual(static_cast<std::size_t>(finer.GetNumberOfVoxels()));
+  usual.Floats = MakeRandomBits<float>(usual.Floats.size(), 5);
+  const Deformed deformed = LoadAndRun(finer, usual.Get());
   std::size_t voxel = 0;
   for (int z = Volume[4]; z <= Volume[5]; ++z)
   {
@@ -199,7 +190,7 @@ TEST(MeshRasterization, UndeformedAtAnotherSpacingKeepsTheVoxels)
           ((7 * z - finer.Output[4]) * GetSize(finer.Output, 1) + 2 * y - finer.Output[2]) *
             GetSize(finer.Output, 0) +
           3 * x - finer.Output[0];
-        ASSERT_EQ(std::memcmp(&deformed.GetOutput<float>(0)[target], &values[voxel], 4), 0)
+        ASSERT_EQ(std::memcmp(&deformed.GetOutput<float>(1)[target], &usual.Floats[voxel], 4), 0)
           << "voxel " << voxel;
       }
     }
@@ -210,23 +201,12 @@ TEST(MeshRasterization, ValuesOfAllTypesEqualReference)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const RasterCase waved = MakeRasterCase(Volume, 4, Wave, { { 1, 1, 1 } });
-  const std::size_t voxels = static_cast<std::size_t>(waved.GetNumberOfVoxels());
-#define DECLARE(name, type, cl)                                                                    \
-  const auto one##name = MakeRandomValues<type>(voxels, 21);                                       \
-  const auto two##name = MakeRandomValues<type>(2 * voxels, 22);
-  DEFORMVOLUME_ELEMENT_TYPES(DECLARE)
-#undef DECLARE
-  std::vector<VolumeArray> arrays;
-#define ADD(name, type, cl)                                                                        \
-  arrays.push_back(MakeArray(one##name));                                                          \
-  arrays.push_back(MakeArray(two##name, 2));                                                       \
-  arrays.push_back(MakeArray(one##name, 1, true));
-  DEFORMVOLUME_ELEMENT_TYPES(ADD)
-#undef ADD
+  const AllTypes types(static_cast<std::size_t>(waved.GetNumberOfVoxels()), 0.0, false);
   for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
   {
     SCOPED_TRACE(interpolation == Interpolation::Cubic);
-    ExpectEqualsReference(waved, arrays, LoadAndRun(waved, arrays, interpolation), interpolation);
+    ExpectEqualsReference(
+      waved, types.Arrays, LoadAndRun(waved, types.Arrays, interpolation), interpolation);
   }
 }
 
@@ -253,11 +233,8 @@ TEST(MeshRasterization, AffineMapsEqualReference)
     }
     const RasterCase affine = MakeRasterCase(
       Volume, 1 + run % 4, [&matrix](const glm::dvec3& index) { return matrix * index; }, scale);
-    const auto values = MakeRandomValues<std::uint16_t>(affine.GetNumberOfVoxels(), run);
-    const auto floats = MakeRandomValues<float>(affine.GetNumberOfVoxels(), run);
-    const auto doubles = MakeRandomValues<double>(affine.GetNumberOfVoxels(), run);
-    const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(floats),
-      MakeArray(doubles) };
+    const UsualArrays usual(affine.GetNumberOfVoxels());
+    const std::vector<VolumeArray> arrays = usual.Get();
     ExpectEqualsReference(affine, arrays, LoadAndRun(affine, arrays));
   }
 }
@@ -277,8 +254,8 @@ TEST(MeshRasterization, FoldedMeshesEqualReference)
     folded.Tetrahedra.push_back({ { 0, 1, 2, 3 } });
     folded.Tetrahedra.push_back({ { 5, 5, 9, 20 } });
     folded.Tetrahedra.push_back(folded.Tetrahedra[7]);
-    const auto values = MakeRandomValues<std::int16_t>(folded.GetNumberOfVoxels(), seed);
-    const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(values, 1, true) };
+    const UsualArrays usual(folded.GetNumberOfVoxels());
+    const std::vector<VolumeArray> arrays = usual.Get();
     const Deformed deformed = LoadAndRun(folded, arrays);
     EXPECT_TRUE(deformed.Report.Overlapping);
     EXPECT_GT(deformed.Report.NumberOfInvertedTetrahedra, 0);
@@ -298,8 +275,8 @@ TEST(MeshRasterization, SliversAndStretchedMeshesEqualReference)
           index.x + 0.5 * index.y, index.y + 0.4, 0.5 * index.x + thickness * index.z);
       },
       { { 1, 1, 1 } });
-    const auto values = MakeRandomValues<float>(flat.GetNumberOfVoxels(), 3);
-    const std::vector<VolumeArray> arrays{ MakeArray(values) };
+    const UsualArrays usual(flat.GetNumberOfVoxels());
+    const std::vector<VolumeArray> arrays = usual.Get();
     const Deformed deformed = LoadAndRun(flat, arrays);
     EXPECT_GT(deformed.Report.NumberOfCoveredVoxels, 0);
     ExpectEqualsReference(flat, arrays, deformed);
@@ -308,8 +285,8 @@ TEST(MeshRasterization, SliversAndStretchedMeshesEqualReference)
     [](const glm::dvec3& index)
     { return index * glm::dvec3(40.0, 9.0, 13.0) + glm::dvec3(-50.5, 3.25, 0.1 * index.x); },
     { { 1, 1, 1 } });
-  const auto values = MakeRandomValues<float>(wide.GetNumberOfVoxels(), 3);
-  ExpectEqualsReference(wide, { MakeArray(values) }, LoadAndRun(wide, { MakeArray(values) }));
+  const UsualArrays usual(wide.GetNumberOfVoxels());
+  ExpectEqualsReference(wide, usual.Get(), LoadAndRun(wide, usual.Get()));
 }
 
 TEST(MeshRasterization, MasksEqualReference)
@@ -329,8 +306,9 @@ TEST(MeshRasterization, MasksEqualReference)
     {
       byte = random() % 4 == 0 ? static_cast<unsigned char>(random() % 32) : 31;
     }
-    const auto values = MakeRandomValues<std::uint8_t>(masked.GetNumberOfVoxels(), 3);
-    const std::vector<VolumeArray> arrays{ MakeArray(values, 1, false, 200.4) };
+    const UsualArrays usual(masked.GetNumberOfVoxels());
+    std::vector<VolumeArray> arrays = usual.Get();
+    arrays[0].Background = 200.4;
     for (const Interpolation interpolation : { Interpolation::Linear, Interpolation::Cubic })
     {
       ExpectEqualsReference(
@@ -343,7 +321,7 @@ TEST(MeshRasterization, MasksEqualReference)
     {
       if (deformed.Coverage[voxel] == 0)
       {
-        ASSERT_EQ(deformed.GetOutput<std::uint8_t>(0)[voxel], 200);
+        ASSERT_EQ(deformed.GetOutput<std::int16_t>(0)[voxel], 200);
       }
     }
   }
@@ -354,9 +332,8 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   const RasterCase folded = MakeRasterCase(Volume, 3, MakeJitter(9, 3.0), { { 2.3, 2.3, 1.7 } });
-  const auto values = MakeRandomValues<float>(folded.GetNumberOfVoxels(), 3);
-  const auto doubles = MakeRandomValues<double>(2 * folded.GetNumberOfVoxels(), 4);
-  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(doubles, 2) };
+  const UsualArrays usual(folded.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
   VolumeDeformer deformer;
   Load(deformer, folded, arrays);
   const Deformed whole = Rasterize(deformer, folded, arrays);
@@ -370,7 +347,7 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
   }
   deformer.SetWorkGroupSize(0);
   // Slabs of a few planes.
-  const std::uint64_t plane = 16 * GetSize(folded.Output, 0) * GetSize(folded.Output, 1);
+  const std::uint64_t plane = 4 * GetSize(folded.Output, 0) * GetSize(folded.Output, 1);
   deformer.SetAllocationLimit(3 * plane);
   Deformed other = Rasterize(deformer, folded, arrays);
   EXPECT_EQ(other.Outputs, whole.Outputs);
@@ -379,16 +356,18 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
   EXPECT_EQ(other.Report.NumberOfCoveredVoxels, whole.Report.NumberOfCoveredVoxels);
   // Unaligned outputs: each slab is copied from the device while the next one is made.
   const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(folded.Output));
-  const std::size_t bytes[] = { sizeof(float) * voxels, 2 * sizeof(double) * voxels };
   for (const int calls : { 1000, 2, 40 })
   {
-    auto first = std::make_unique<std::vector<unsigned char>>(bytes[0] + 1);
-    auto second = std::make_unique<std::vector<unsigned char>>(bytes[1] + 1);
+    auto outputs = std::make_unique<std::vector<std::vector<unsigned char>>>();
     std::vector<signed char> coverage(voxels);
     DeformRequest request;
     request.Method = Resampling::MeshRasterization;
     request.OutputExtent = folded.Output;
-    request.Outputs = { first->data() + 1, second->data() + 1 };
+    for (const VolumeArray& array : arrays)
+    {
+      outputs->emplace_back(voxels * GetTupleSize(array) + 1);
+      request.Outputs.push_back(outputs->back().data() + 1);
+    }
     request.Coverage = coverage.data();
     int left = calls;
     request.Progress = [&left](double) { return --left > 0; };
@@ -400,8 +379,11 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
     }
     EXPECT_EQ(deformer.Deform(request).NumberOfCoveredVoxels, whole.Report.NumberOfCoveredVoxels);
     EXPECT_LT(left, 1000 - 2 * 32) << "Progress was called too rarely for more than two slabs";
-    EXPECT_EQ(std::memcmp(first->data() + 1, whole.Outputs[0].data(), bytes[0]), 0);
-    EXPECT_EQ(std::memcmp(second->data() + 1, whole.Outputs[1].data(), bytes[1]), 0);
+    for (std::size_t i = 0; i < arrays.size(); ++i)
+    {
+      EXPECT_EQ(
+        std::memcmp(request.Outputs[i], whole.Outputs[i].data(), (*outputs)[i].size() - 1), 0);
+    }
     EXPECT_EQ(coverage, whole.Coverage);
   }
   deformer.SetAllocationLimit(0);
@@ -422,7 +404,7 @@ TEST(MeshRasterization, ResultDoesNotDependOnTheDivisionOfWork)
             GetSize(folded.Output, 0) +
           x - folded.Output[0];
         ASSERT_EQ(other.Coverage[voxel], whole.Coverage[at]);
-        ASSERT_EQ(other.GetOutput<float>(0)[voxel], whole.GetOutput<float>(0)[at]);
+        ASSERT_EQ(other.GetOutput<float>(1)[voxel], whole.GetOutput<float>(1)[at]);
       }
     }
   }
@@ -433,14 +415,14 @@ TEST(MeshRasterization, NotANumberStaysWithinItsCells)
 {
   const RasterCase shifted = MakeRasterCase(Volume, 2,
     [](const glm::dvec3& index) { return index + glm::dvec3(0.5, 0.0, 1.0); }, { { 1, 1, 1 } });
-  auto values = MakeRandomValues<float>(shifted.GetNumberOfVoxels(), 3);
+  UsualArrays usual(shifted.GetNumberOfVoxels());
   const std::int64_t place = (5 * GetSize(Volume, 1) + 6) * GetSize(Volume, 0) + 9;
-  values[place] = std::numeric_limits<float>::quiet_NaN();
-  const Deformed deformed = LoadAndRun(shifted, { MakeArray(values) });
+  usual.Floats[place] = std::numeric_limits<float>::quiet_NaN();
+  const Deformed deformed = LoadAndRun(shifted, usual.Get());
   std::int64_t numberOfNaN = 0;
   for (std::size_t voxel = 0; voxel < deformed.Coverage.size(); ++voxel)
   {
-    numberOfNaN += std::isnan(deformed.GetOutput<float>(0)[voxel]);
+    numberOfNaN += std::isnan(deformed.GetOutput<float>(1)[voxel]);
   }
   EXPECT_EQ(numberOfNaN, 2); // one output voxel on either side of the NaN
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Values of the output: element types, several arrays at once, labels, background values.
+#include "AllTypes.h"
 #include "ArrayText.h"
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -20,43 +22,6 @@ glm::dvec3 Stay(const glm::dvec3& index)
 {
   return index;
 }
-
-/// Interpolated arrays of all types, categorical ones with two components, and some interpolated
-/// ones with two components. Their kernels take a minute to compile, so all tests use the same
-/// ones.
-class AllTypes
-{
-public:
-  AllTypes(std::size_t voxels, double background, bool bits)
-  {
-    const auto fill = [&](auto& values, std::size_t size, unsigned int seed)
-    {
-      using T = typename std::decay_t<decltype(values)>::value_type;
-      values = bits ? MakeRandomBits<T>(size, seed) : MakeRandomValues<T>(size, seed);
-    };
-#define ADD(name, type, cl)                                                                        \
-  fill(this->One##name, voxels, 11);                                                               \
-  fill(this->Two##name, 2 * voxels, 12);                                                           \
-  this->Arrays.push_back(MakeArray(this->One##name, 1, false, background));                        \
-  this->Arrays.push_back(MakeArray(this->Two##name, 2, true, background));
-    DEFORMVOLUME_ELEMENT_TYPES(ADD)
-#undef ADD
-    this->Arrays.push_back(MakeArray(this->TwoUInt8, 2, false, background));
-    this->Arrays.push_back(MakeArray(this->TwoInt64, 2, false, background));
-    this->Arrays.push_back(MakeArray(this->TwoFloat32, 2, false, background));
-  }
-  AllTypes(const AllTypes&) = delete;
-  AllTypes& operator=(const AllTypes&) = delete;
-
-  std::vector<VolumeArray> Arrays;
-
-private:
-#define DECLARE(name, type, cl)                                                                    \
-  std::vector<type> One##name;                                                                     \
-  std::vector<type> Two##name;
-  DEFORMVOLUME_ELEMENT_TYPES(DECLARE)
-#undef DECLARE
-};
 
 DeformerCase Shift(const glm::dvec3& shift)
 {
@@ -125,25 +90,6 @@ TEST(ElementTypes, DeformedValuesEqualReference)
   ExpectEqualsReference(jittered, reference, types.Arrays, LoadAndRun(jittered, types.Arrays));
 }
 
-TEST(ElementTypes, LabelsOf64BitsSurvive)
-{
-  // Values of neighboring voxels differ in the last bit, which a double does not hold above 2^53.
-  const DeformerCase jittered =
-    MakeCase({ { 0, 8, 0, 8, 0, 8 } }, { { 1, 1, 1 } }, MakeJitter(21, 0.2));
-  const std::size_t size = jittered.GetNumberOfVoxels();
-  std::vector<std::uint64_t> unsignedLabels(size);
-  std::vector<std::int64_t> signedLabels(size);
-  for (std::size_t voxel = 0; voxel < size; ++voxel)
-  {
-    unsignedLabels[voxel] = std::numeric_limits<std::uint64_t>::max() - voxel;
-    signedLabels[voxel] = -(std::int64_t(1) << 53) - static_cast<std::int64_t>(2 * voxel + 1);
-  }
-  const std::vector<VolumeArray> arrays{ MakeArray(unsignedLabels, 1, true),
-    MakeArray(signedLabels, 1, true) };
-  const reference::Result reference = ResampleByReference(jittered);
-  ExpectEqualsReference(jittered, reference, arrays, LoadAndRun(jittered, arrays));
-}
-
 TEST(ElementTypes, NearLargeIntegersOf64BitsAreRoundedToNearest)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
@@ -151,14 +97,15 @@ TEST(ElementTypes, NearLargeIntegersOf64BitsAreRoundedToNearest)
   // between them.
   const DeformerCase shifted = MakeCase({ { 0, 6, 0, 6, 0, 6 } }, { { 1, 1, 1 } },
     [](const glm::dvec3& index) { return index + glm::dvec3(0.25, 0.5, 0.125); });
-  std::vector<std::int64_t> values(shifted.GetNumberOfVoxels());
+  AllTypes types(shifted.GetNumberOfVoxels(), 0.0, false);
+  std::vector<std::int64_t>& values = types.OneInt64;
   const std::int64_t base = std::numeric_limits<std::int64_t>::max() - 1000;
   for (std::size_t voxel = 0; voxel < values.size(); ++voxel)
   {
     values[voxel] = base + static_cast<std::int64_t>(voxel % 7) * 16;
   }
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
-  const Deformed deformed = LoadAndRun(shifted, arrays);
+  const Deformed deformed = LoadAndRun(shifted, types.Arrays);
+  const auto* const output = deformed.GetOutput<std::int64_t>(types.Find<std::int64_t>());
   const reference::Result reference = ResampleByReference(shifted);
   for (std::size_t voxel = 0; voxel < reference.Voxels.size(); ++voxel)
   {
@@ -171,7 +118,7 @@ TEST(ElementTypes, NearLargeIntegersOf64BitsAreRoundedToNearest)
       {
         sum += containing.Numerators[k] * (values[containing.Vertices[k]] - base);
       }
-      const std::int64_t value = deformed.GetOutput<std::int64_t>(0)[voxel] - base;
+      const std::int64_t value = output[voxel] - base;
       EXPECT_LE(std::abs(2 * (value * containing.Denominator - sum)), containing.Denominator);
     }
   }
@@ -179,22 +126,24 @@ TEST(ElementTypes, NearLargeIntegersOf64BitsAreRoundedToNearest)
 
 TEST(ElementTypes, IntegersAreRoundedToNearestEvenAndStayInRange)
 {
+  SKIP_WITHOUT_DOUBLE_PRECISION()
   const DeformerCase half = MakeCase(
     { { 0, 4, 0, 2, 0, 2 } }, { { 1, 1, 1 } },
     [](const glm::dvec3& index) { return index + glm::dvec3(0.5, 0.0, 0.0); }, 0);
-  std::vector<std::uint8_t> values(half.GetNumberOfVoxels());
+  AllTypes types(half.GetNumberOfVoxels(), 9.0, false);
+  std::vector<std::uint8_t>& values = types.OneUInt8;
   const std::array<std::uint8_t, 5> row{ { 0, 1, 2, 255, 255 } };
   for (std::size_t voxel = 0; voxel < values.size(); ++voxel)
   {
     values[voxel] = row[voxel % 5];
   }
-  const Deformed deformed = LoadAndRun(half, { MakeArray(values, 1, false, 9.0) });
+  const Deformed deformed = LoadAndRun(half, types.Arrays);
+  const auto* const output = deformed.GetOutput<std::uint8_t>(types.Find<std::uint8_t>());
   // Samples halfway between two voxels: 0.5 -> 0, 1.5 -> 2, 128.5 -> 128, 255.
   const std::array<std::uint8_t, 6> expected{ { 9, 0, 2, 128, 255, 9 } };
   for (std::int64_t voxel = 0; voxel < GetNumberOfPoints(half.Output); ++voxel)
   {
-    EXPECT_EQ(+deformed.GetOutput<std::uint8_t>(0)[voxel], +expected[voxel % 6])
-      << "voxel " << voxel;
+    EXPECT_EQ(+output[voxel], +expected[voxel % 6]) << "voxel " << voxel;
   }
 }
 
@@ -217,18 +166,16 @@ TEST(ElementTypes, NotANumberStaysWithinItsTetrahedra)
   const DeformerCase jittered = MakeCase({ { 0, 7, 0, 7, 0, 7 } }, { { 2, 2, 2 } },
     [](const glm::dvec3& index)
     { return 2.0 * index + glm::dvec3(0.25 * index.y, 0.5, 0.125 * index.x); });
-  auto values = MakeRandomValues<float>(jittered.GetNumberOfVoxels(), 3);
-  auto doubles = MakeRandomValues<double>(jittered.GetNumberOfVoxels(), 4);
-  values[8 * 8 * 3 + 8 * 4 + 3] = std::numeric_limits<float>::quiet_NaN();
-  doubles[8 * 8 * 5 + 8 * 2 + 3] = std::numeric_limits<double>::infinity();
-  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(doubles) };
+  AllTypes types(jittered.GetNumberOfVoxels(), 0.0, false);
+  types.OneFloat32[8 * 8 * 3 + 8 * 4 + 3] = std::numeric_limits<float>::quiet_NaN();
+  types.OneFloat64[8 * 8 * 5 + 8 * 2 + 3] = std::numeric_limits<double>::infinity();
   const reference::Result reference = ResampleByReference(jittered);
-  const Deformed deformed = LoadAndRun(jittered, arrays);
-  ExpectEqualsReference(jittered, reference, arrays, deformed);
+  const Deformed deformed = LoadAndRun(jittered, types.Arrays);
+  ExpectEqualsReference(jittered, reference, types.Arrays, deformed);
   int spoilt = 0;
   for (std::size_t voxel = 0; voxel < reference.Voxels.size(); ++voxel)
   {
-    spoilt += std::isnan(deformed.GetOutput<float>(0)[voxel]) ? 1 : 0;
+    spoilt += std::isnan(deformed.GetOutput<float>(types.Find<float>())[voxel]) ? 1 : 0;
   }
   EXPECT_GT(spoilt, 0);
   EXPECT_LE(spoilt, 64);
@@ -243,8 +190,9 @@ TEST(ElementTypes, LargeFloatsInLargeCellsStayFinite)
     const DeformerCase sheared = MakeCase({ { 0, 20, 0, 4, 0, 4 } }, { { 1, 1, 1 } },
       [=](const glm::dvec3& index)
       { return size * index + glm::dvec3(0.3 * index.y, 0.1 * index.x, 0.2 * index.y); });
-    const std::vector<float> values(sheared.GetNumberOfVoxels(), 9.96921e36F);
-    const std::vector<VolumeArray> arrays{ MakeArray(values) };
+    UsualArrays usual(sheared.GetNumberOfVoxels());
+    std::fill(usual.Floats.begin(), usual.Floats.end(), 9.96921e36F);
+    const std::vector<VolumeArray> arrays = usual.Get();
     const Deformed deformed = LoadAndRun(sheared, arrays);
     ExpectEqualsReference(sheared, ResampleByReference(sheared), arrays, deformed);
   }

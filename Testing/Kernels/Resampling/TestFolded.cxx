@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 using namespace deformvolume;
 
 namespace
@@ -16,10 +18,7 @@ const Extent Volume{ { -2, 9, 0, 8, 1, 10 } };
 void Check(const DeformerCase& folded, const reference::Result& reference)
 {
   const UsualArrays usual(folded.GetNumberOfVoxels());
-  // This array is interpolated in double precision.
-  const auto values = MakeRandomValues<std::int32_t>(folded.GetNumberOfVoxels(), 2);
-  std::vector<VolumeArray> arrays = usual.Get();
-  arrays.push_back(MakeArray(values));
+  const std::vector<VolumeArray> arrays = usual.Get();
   ExpectEqualsReference(folded, reference, arrays, LoadAndRun(folded, arrays));
 }
 
@@ -388,13 +387,14 @@ TEST(Folded, OverstretchedTetrahedraAreSkippedAndCounted)
   DeformerCase torn = MakeCase(small, NoScale, [](const glm::dvec3& index) { return index; });
   // One vertex at a corner of the volume is moved far away. It belongs to one cell.
   torn.Displacements.back() = { { 5000 * 256, 0, 0 } };
-  const std::vector<float> values(torn.GetNumberOfVoxels(), 2.0F);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  UsualArrays usual(torn.GetNumberOfVoxels()); // the background of the floats is 2
+  std::fill(usual.Floats.begin(), usual.Floats.end(), 3.0F);
+  const std::vector<VolumeArray> arrays = usual.Get();
   const Deformed deformed = LoadAndRun(torn, arrays);
   EXPECT_EQ(deformed.Report.NumberOfOverstretchedCells, 1);
   EXPECT_GE(deformed.Report.NumberOfCoveredVoxels, 63);
   for (std::size_t voxel = 0; voxel < deformed.Coverage.size(); ++voxel)
   {
-    EXPECT_EQ(deformed.GetOutput<float>(0)[voxel], deformed.Coverage[voxel] != 0 ? 2.0F : 0.0F);
+    EXPECT_EQ(deformed.GetOutput<float>(1)[voxel], deformed.Coverage[voxel] != 0 ? 3.0F : 2.0F);
   }
 }

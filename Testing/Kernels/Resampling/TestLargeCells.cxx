@@ -179,8 +179,8 @@ TEST(LargeCells, TimeIsThatOfTheirSamples)
   // Writing the background values takes time, too.
   DeformerCase nothing = thin;
   nothing.Blanked.assign(8, 1);
-  const std::vector<std::uint8_t> values{ 1, 2, 3, 4, 5, 6, 7, 8 };
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
+  const UsualArrays usual(8);
+  const std::vector<VolumeArray> arrays = usual.Get();
   for (const Resampling method : GetExactMethods())
   {
     SCOPED_TRACE(int(method));
