@@ -68,7 +68,6 @@ std::int64_t Deform(const EditedVolume& volume, const DisplacementField& field, 
 
 TEST(FieldInPlace, EqualsACopy)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   EditedVolume volume;
   for (const int border : { 0, 3 })
   {
@@ -109,7 +108,6 @@ TEST(FieldInPlace, EqualsACopy)
 // Changes may be reported in any order, also twice, for fields in place and for copied fields.
 TEST(FieldInPlace, ChangesInAnyOrder)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   const EditedVolume volume;
   for (const bool isInPlace : { true, false })
   {
@@ -146,7 +144,6 @@ TEST(FieldInPlace, ChangesInAnyOrder)
 // The matrix applies to copied fields, too.
 TEST(FieldInPlace, MatrixEqualsScaledVectors)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   const EditedVolume volume;
   Vectors vectors(volume, 1);
   EditedOutputs expected(volume);
@@ -165,7 +162,6 @@ TEST(FieldInPlace, MatrixEqualsScaledVectors)
 // Vectors that are read in place may have any values. Voxels with invalid vectors are discarded.
 TEST(FieldInPlace, InvalidVectorsDiscardVoxels)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   const EditedVolume volume;
   Vectors vectors(volume, 0);
   EditedOutputs outputs(volume);

@@ -31,8 +31,7 @@ EditedVolume::EditedVolume(const Extent& extent, bool hasCorner)
       static_cast<int>(GetSize(this->Shape.VertexExtent, axis) + Step - 2) / Step + 1;
   }
   const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(this->Shape.VertexExtent));
-  this->First = MakeRandomValues<std::uint16_t>(voxels, 1);
-  this->Second = MakeRandomValues<double>(2 * voxels, 2);
+  this->Arrays = UsualArrays(voxels);
   this->Displacements.assign(
     3 * static_cast<std::size_t>(this->Nodes[0]) * this->Nodes[1] * this->Nodes[2], 0.0F);
   this->Output = this->Shape.VertexExtent;
@@ -153,8 +152,12 @@ void EditedVolume::AddVoxel(const std::array<int, 3>& voxel, bool linked,
 
 std::vector<VolumeArray> EditedVolume::GetArrays() const
 {
-  return { MakeArray(this->First, 1, false, this->Background),
-    MakeArray(this->Second, 2, false, this->Background) };
+  std::vector<VolumeArray> arrays = this->Arrays.Get();
+  for (VolumeArray& array : arrays)
+  {
+    array.Background = this->Background;
+  }
+  return arrays;
 }
 
 void EditedVolume::SendDisplacements(
@@ -374,8 +377,9 @@ void EditedVolume::MoveRound(
 }
 
 EditedOutputs::EditedOutputs(const EditedVolume& volume)
-  : First(GetNumberOfPoints(volume.Output), 999)
-  , Second(2 * GetNumberOfPoints(volume.Output), 999.0)
+  : Shorts(GetNumberOfPoints(volume.Output), 999)
+  , Floats(GetNumberOfPoints(volume.Output), 999.0F)
+  , Labels(2 * GetNumberOfPoints(volume.Output), 999)
   , Coverage(GetNumberOfPoints(volume.Output), 9)
 {
 }
@@ -386,22 +390,22 @@ DeformRequest EditedOutputs::MakeRequest(const EditedVolume& volume)
   request.Method = volume.Method;
   request.Interpolation = volume.Interpolation;
   request.OutputExtent = volume.Output;
-  request.Outputs = { this->First.data(), this->Second.data() };
+  request.Outputs = { this->Shorts.data(), this->Floats.data(), this->Labels.data() };
   request.Coverage = this->Coverage.data();
   return request;
 }
 
 void EditedOutputs::SetLast(DeformRequest& request) const
 {
-  request.LastOutputs = { this->First.data(), this->Second.data() };
+  request.LastOutputs = { this->Shorts.data(), this->Floats.data(), this->Labels.data() };
   request.LastCoverage = this->Coverage.data();
 }
 
 bool EditedOutputs::operator==(const EditedOutputs& other) const
 {
-  return this->First == other.First && this->Coverage == other.Coverage &&
-    std::memcmp(this->Second.data(), other.Second.data(), this->Second.size() * sizeof(double)) ==
-    0;
+  return this->Shorts == other.Shorts && this->Labels == other.Labels &&
+    this->Coverage == other.Coverage &&
+    std::memcmp(this->Floats.data(), other.Floats.data(), this->Floats.size() * sizeof(float)) == 0;
 }
 
 void ExpectSame(const DeformReport& report, const DeformReport& wanted)

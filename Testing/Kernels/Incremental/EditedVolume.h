@@ -31,8 +31,7 @@ struct EditedVolume
   std::vector<deformvolume::VertexLink> Links;
   deformvolume::VertexRuns Runs;
   std::vector<float> Displacements;
-  std::vector<std::uint16_t> First;
-  std::vector<double> Second;
+  UsualArrays Arrays{ 0 };
   std::vector<unsigned char> Blanked;
   std::vector<unsigned char> Active;
   std::vector<float> Distances;
@@ -134,8 +133,9 @@ protected:
 /// Outputs of an EditedVolume.
 struct EditedOutputs
 {
-  std::vector<std::uint16_t> First;
-  std::vector<double> Second;
+  std::vector<std::int16_t> Shorts;
+  std::vector<float> Floats;
+  std::vector<std::uint16_t> Labels; // two per voxel
   std::vector<signed char> Coverage;
 
   explicit EditedOutputs(const EditedVolume& volume);

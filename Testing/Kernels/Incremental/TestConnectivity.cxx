@@ -32,7 +32,6 @@ void SetConnectivity(VolumeDeformer& deformer, const EditedVolume& volume,
 
 TEST_P(Connectivity, MisuseIsAnError)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   const EditedVolume volume;
   VolumeDeformer deformer;
   EXPECT_THROW(SetConnectivity(deformer, volume, nullptr), Error) << "without a volume";
@@ -69,7 +68,6 @@ TEST_P(Connectivity, MisuseIsAnError)
 
 TEST_P(Connectivity, EqualsANewUpload)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   const Route route = GetParam();
   EditedVolume volume;
   const EditedVolume begin = volume;
@@ -135,7 +133,6 @@ TEST_P(Connectivity, EqualsANewUpload)
 // Oclgrind.
 TEST_P(Connectivity, GapsAndMasksOfASmallVolume)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   const Route route = GetParam();
   EditedVolume volume(Extent{ { 0, 16, 1, 8, 0, 8 } }, false);
   std::vector<std::int32_t> places(volume.GetNumberOfNodes());

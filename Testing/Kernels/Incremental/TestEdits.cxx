@@ -27,25 +27,31 @@ struct Memory
     : IsAligned(isAligned)
   {
     const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(volume.Output));
-    this->First.assign(2 * voxels + 1, 77);
-    this->Second.assign(2 * voxels, 777.0);
+    this->Shorts.assign(2 * voxels + 1, 77);
+    this->Floats.assign(voxels, 777.0F);
+    this->Labels.assign(2 * voxels, 777);
     this->Coverage.assign(voxels, 7);
   }
 
-  char* GetFirst() { return this->First.data() + (this->IsAligned ? 0 : 1); }
+  std::vector<void*> GetArrays()
+  {
+    return { this->Shorts.data() + (this->IsAligned ? 0 : 1), this->Floats.data(),
+      this->Labels.data() };
+  }
 
   bool Holds(const EditedOutputs& outputs)
   {
-    return this->Coverage == outputs.Coverage &&
-      std::memcmp(this->GetFirst(), outputs.First.data(), 2 * outputs.First.size()) == 0 &&
+    return this->Coverage == outputs.Coverage && this->Labels == outputs.Labels &&
+      std::memcmp(this->GetArrays()[0], outputs.Shorts.data(), 2 * outputs.Shorts.size()) == 0 &&
       std::memcmp(
-        this->Second.data(), outputs.Second.data(), outputs.Second.size() * sizeof(double)) == 0;
+        this->Floats.data(), outputs.Floats.data(), outputs.Floats.size() * sizeof(float)) == 0;
   }
 
   bool IsAligned;
   std::uint64_t Revision = 0;
-  std::vector<char> First;
-  std::vector<double> Second;
+  std::vector<char> Shorts;
+  std::vector<float> Floats;
+  std::vector<std::uint16_t> Labels;
   std::vector<signed char> Coverage;
 };
 
@@ -62,8 +68,9 @@ bool AreSameOutside(const EditedOutputs& first, const EditedOutputs& second, con
       {
         const bool isInside = x >= extent[0] && x <= extent[1] && y >= extent[2] &&
           y <= extent[3] && z >= extent[4] && z <= extent[5];
-        const bool isSame = first.First[i] == second.First[i] &&
-          std::memcmp(&first.Second[2 * i], &second.Second[2 * i], 2 * sizeof(double)) == 0 &&
+        const bool isSame = first.Shorts[i] == second.Shorts[i] &&
+          first.Floats[i] == second.Floats[i] && first.Labels[2 * i] == second.Labels[2 * i] &&
+          first.Labels[2 * i + 1] == second.Labels[2 * i + 1] &&
           first.Coverage[i] == second.Coverage[i];
         if (!isInside && !isSame)
         {
@@ -96,7 +103,6 @@ protected:
 
   void SetUp() override
   {
-    SKIP_WITHOUT_DOUBLE_PRECISION()
     this->Volume.Method = GetMethod();
     // Cubic interpolation always uses the kernel by cells.
     if (GetMethod() == Resampling::ExactByCell && GetRoute() != Route::Runs)
@@ -202,7 +208,7 @@ protected:
   void ChangeBackground() { this->Volume.Background += 1.0; }
   void ChangeValue()
   {
-    this->Volume.First[this->Pick(this->Volume.First.size())] ^= 1;
+    this->Volume.Arrays.Shorts[this->Pick(this->Volume.Arrays.Shorts.size())] ^= 1;
     for (VolumeDeformer* deformer : { this->Whole.get(), &this->Updated })
     {
       deformer->SetArrays(this->Volume.GetArrays());
@@ -317,12 +323,13 @@ protected:
     request.Method = this->Volume.Method;
     request.Interpolation = this->Volume.Interpolation;
     request.OutputExtent = this->Volume.Output;
-    request.Outputs = { memory.GetFirst(), memory.Second.data() };
+    request.Outputs = memory.GetArrays();
     request.Coverage = memory.Coverage.data();
     request.Incremental = true;
     if (this->Last)
     {
-      request.LastOutputs = { this->Last->GetFirst(), this->Last->Second.data() };
+      const std::vector<void*> last = this->Last->GetArrays();
+      request.LastOutputs.assign(last.begin(), last.end());
       request.LastCoverage = this->Last->Coverage.data();
     }
     request.OutputRevision = &memory == this->Last.get() ? 0 : memory.Revision;

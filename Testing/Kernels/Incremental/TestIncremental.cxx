@@ -73,7 +73,6 @@ protected:
 
 TEST_P(IncrementalBorders, OneSideMovesOutTheOtherIn)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   this->Start();
   for (int y = 0; y < this->Edited.Nodes[1]; ++y)
   {
@@ -90,7 +89,6 @@ TEST_P(IncrementalBorders, OneSideMovesOutTheOtherIn)
 
 TEST_P(IncrementalBorders, MovingHole)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   this->BlankedAt(32, 32, 64) = 1;
   this->Start();
   int same = 0;
@@ -108,7 +106,6 @@ TEST_P(IncrementalBorders, MovingHole)
 
 TEST_P(IncrementalBorders, MaskChangesWhileTheInsideMoves)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   this->BlankedAt(32, 32, 64) = 1;
   this->Start();
   int same = 0;
@@ -126,7 +123,6 @@ TEST_P(IncrementalBorders, MaskChangesWhileTheInsideMoves)
 
 TEST_P(Incremental, LocalEditsRunFewBricks)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   EditedVolume volume = MakeVolume(Extent{ { -5, 140, 0, 100, 3, 80 } });
   VolumeDeformer deformer;
   volume.SendAll(deformer, GetRoute());
@@ -344,7 +340,6 @@ protected:
 // edits of TestEdits.cxx hardly ever detect it.
 TEST_P(IncrementalFolds, EqualWholeUpdates)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   constexpr int edits = 30;
   if (GetNumberOf(edits) < edits)
   {
@@ -407,7 +402,6 @@ TEST_P(IncrementalFolds, EqualWholeUpdates)
 // An edit far from an unchanged fold resamples only bricks near the edit.
 TEST_P(IncrementalFolds, EditsOutsideTheFoldRunFewBricks)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   EditedVolume& edited = this->Edited;
   this->Both.SendAll(edited, GetRoute());
   edited.Displacements[3 * edited.GetNode({ { 4, 5, 5 } })] = 14.0F;
@@ -437,7 +431,6 @@ TEST_P(IncrementalFolds, EditsOutsideTheFoldRunFewBricks)
 // folded span, but not the first one.
 TEST_P(IncrementalFolds, InvertedTetrahedraAreCountedOnce)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   static_assert(DEFORMVOLUME_CUBOID_X == 2 * DEFORMVOLUME_SPAN, "spans of a cuboid");
   EditedVolume& edited = this->Edited;
   edited = MakeVolume(Extent{ { -5, 140, 0, 74, 3, 40 } });

@@ -24,7 +24,6 @@ class IncrementalCutMotions : public WayTest
 // the output is the same as without a cut.
 TEST_P(IncrementalCutMotions, AffineMotionsShowNoCut)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   EditedVolume volume = MakeVolume();
   volume.Output = { { -20, 170, -20, 70, -20, 60 } };
   std::size_t component = 0;
@@ -158,7 +157,6 @@ struct VoxelField
 // direction, beyond all vertices. The other side is far away.
 TEST(IncrementalCuts, CopiesReachBeyondVertices)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (const Resampling method : GetExactMethods())
   {
     SCOPED_TRACE(static_cast<int>(method));
@@ -191,7 +189,6 @@ TEST(IncrementalCuts, CopiesReachBeyondVertices)
 // Moves single voxels beside a sheet that divides random tetrahedra.
 TEST(IncrementalCuts, VoxelsMoveCopiesUpToTwoVoxelsAway)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   std::mt19937 random(5);
   std::uniform_real_distribution<float> jitter(-0.4F, 0.4F);
   VoxelField made;
@@ -230,7 +227,6 @@ TEST(IncrementalCuts, VoxelsMoveCopiesUpToTwoVoxelsAway)
 // brick.
 TEST(IncrementalCuts, CopiesInTheNextBrickMove)
 {
-  SKIP_WITHOUT_DOUBLE_PRECISION()
   for (const Resampling method : GetExactMethods())
   {
     SCOPED_TRACE(static_cast<int>(method));

@@ -28,7 +28,6 @@ protected:
   void SetUp() override
   {
     SKIP_UNLESS_GRAPHICS()
-    SKIP_WITHOUT_DOUBLE_PRECISION()
     this->Edited.SendAll(*this->Deformer, GetParam());
     this->Request.MayStayOnDevice = true;
     this->Request.Incremental = true;
@@ -67,7 +66,7 @@ protected:
   }
   std::uint64_t GetBytes() const
   {
-    return 19 * static_cast<std::uint64_t>(GetNumberOfPoints(this->Edited.Output));
+    return 11 * static_cast<std::uint64_t>(GetNumberOfPoints(this->Edited.Output));
   }
 
   EditedVolume Edited;
@@ -80,11 +79,11 @@ protected:
 
 TEST_P(OutputOnDevice, MisuseIsAnError)
 {
-  this->Request.HeldRevisions = { 1, 2 }; // without one of the coverage
+  this->Request.HeldRevisions = { 1, 2, 3 }; // without one of the coverage
   EXPECT_THROW(this->Deformer->Deform(this->Request), Error);
-  this->Request.HeldRevisions = { 1, 2, 3 }; // revisions that no output has
+  this->Request.HeldRevisions = { 1, 2, 3, 4 }; // revisions that no output has
   const DeviceOutputs outputs = this->Update().DeviceOutputs;
-  ASSERT_EQ(outputs.size(), 3U);
+  ASSERT_EQ(outputs.size(), 4U);
   Read(outputs);
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
 }
@@ -96,16 +95,16 @@ TEST_P(OutputOnDevice, IsReadOnce)
   EditedOutputs untouched(this->Edited);
   FakeDriver::Get().BytesRead = 0;
   DeviceOutputs outputs = this->Update().DeviceOutputs;
-  ASSERT_EQ(outputs.size(), 3U);
+  ASSERT_EQ(outputs.size(), 4U);
   EXPECT_LT(FakeDriver::Get().BytesRead, this->GetBytes() / 50);
   EXPECT_TRUE(this->Outputs == untouched);
   EXPECT_TRUE(outputs[0]->IsOnDevice());
   EXPECT_FALSE(outputs[0]->IsRead());
-  EXPECT_EQ(this->CountRead({ outputs[1] }), this->GetBytes() / 19 * 16);
+  EXPECT_EQ(this->CountRead({ outputs[1] }), this->GetBytes() / 11 * 4);
   EXPECT_TRUE(outputs[1]->IsRead());
   EXPECT_FALSE(outputs[1]->IsOnDevice());
   EXPECT_TRUE(outputs[0]->IsOnDevice());
-  EXPECT_EQ(this->CountRead(outputs), this->GetBytes() / 19 * 3);
+  EXPECT_EQ(this->CountRead(outputs), this->GetBytes() / 11 * 7);
   EXPECT_EQ(this->CountRead(outputs), 0U);
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
   // An output that is never read.
@@ -145,7 +144,7 @@ TEST_P(OutputOnDevice, OutlivesLaterUpdates)
     EditedOutputs next(this->Edited);
     const EditedOutputs expected = this->MakeExpected();
     const DeviceOutputs outputs = this->Update().DeviceOutputs;
-    ASSERT_EQ(outputs.size(), 3U);
+    ASSERT_EQ(outputs.size(), 4U);
     const std::uint64_t held = this->Deformer->GetDeviceMemory();
     DeformRequest request = next.MakeRequest(this->Edited);
     request.Incremental = way == PartOfTheOutput;
@@ -199,7 +198,7 @@ TEST_P(OutputOnDevice, EqualsWholeOutputs)
 {
   std::mt19937 random(static_cast<unsigned>(GetParam()) + 1);
   std::vector<EditedOutputs> memories(3, EditedOutputs(this->Edited));
-  std::array<std::array<std::uint64_t, 3>, 3> held{};
+  std::array<std::array<std::uint64_t, 4>, 3> held{};
   std::array<std::uint64_t, 3> revisions{};
   std::array<DeviceOutputs, 3> outputs;
   std::array<std::optional<EditedOutputs>, 3> expected;
@@ -225,14 +224,14 @@ TEST_P(OutputOnDevice, EqualsWholeOutputs)
     parts += report.NumberOfResampledBricks < report.NumberOfBricks;
     const auto isCovered = [](signed char covered) { return covered != 0; };
     outputs[turn] = report.DeviceOutputs;
-    ASSERT_EQ(outputs[turn].size(), 3U);
+    ASSERT_EQ(outputs[turn].size(), 4U);
     expected[turn] = this->MakeExpected();
     EXPECT_EQ(report.NumberOfCoveredVoxels,
       std::count_if(expected[turn]->Coverage.begin(), expected[turn]->Coverage.end(), isCovered));
     revisions[turn] = report.Revision;
     if (random() % 2 == 0) // reads one array; the other arrays of this memory keep earlier outputs
     {
-      const std::size_t array = random() % 3;
+      const std::size_t array = random() % 4;
       outputs[turn][array]->Read();
       held[turn][array] = report.Revision;
     }
@@ -252,7 +251,7 @@ TEST_P(OutputOnDevice, LocalEditsReadLittle)
   DeformReport report = this->Update();
   Read(report.DeviceOutputs);
   this->At(12, 3, 2)[0] = 0.5F;
-  this->Request.HeldRevisions.assign(3, report.Revision);
+  this->Request.HeldRevisions.assign(4, report.Revision);
   report = this->Update();
   ASSERT_LT(report.NumberOfResampledBricks, report.NumberOfBricks);
   const std::uint64_t read = this->CountRead(report.DeviceOutputs);
@@ -260,7 +259,7 @@ TEST_P(OutputOnDevice, LocalEditsReadLittle)
   EXPECT_LT(read, this->GetBytes() / 4);
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
   // Nothing has changed.
-  this->Request.HeldRevisions.assign(3, report.Revision);
+  this->Request.HeldRevisions.assign(4, report.Revision);
   report = this->Update();
   EXPECT_EQ(this->CountRead(report.DeviceOutputs), 0U);
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
@@ -268,10 +267,10 @@ TEST_P(OutputOnDevice, LocalEditsReadLittle)
 
 TEST_P(OutputOnDevice, OutputsInPartsGoToTheHost)
 {
-  // Memory for 15 planes of the array of two doubles per voxel.
-  this->Deformer->SetAllocationLimit(16 *
+  // Memory for 20 planes of an array of four bytes per voxel.
+  this->Deformer->SetAllocationLimit(4 *
     static_cast<std::uint64_t>(GetSize(this->Edited.Output, 0)) *
-    static_cast<std::uint64_t>(GetSize(this->Edited.Output, 1)) * 15);
+    static_cast<std::uint64_t>(GetSize(this->Edited.Output, 1)) * 20);
   this->Edited.SendAll(*this->Deformer, GetParam());
   EXPECT_TRUE(this->Update().DeviceOutputs.empty());
   EXPECT_TRUE(this->Outputs == this->MakeExpected());
@@ -286,15 +285,16 @@ TEST_P(OutputOnDevice, ManyThreadsReadAtOnce)
     const EditedOutputs expected = this->MakeExpected();
     FakeDriver::Get().BytesRead = 0;
     std::vector<std::thread> threads;
-    std::array<bool, 6> same{};
+    std::array<bool, 8> same{};
     for (std::size_t thread = 0; thread < same.size(); ++thread)
     {
       threads.emplace_back(
         [&, thread]
         {
-          outputs[thread % 3]->Read();
-          same[thread] = thread % 3 == 0 ? this->Outputs.First == expected.First
-            : thread % 3 == 1            ? this->Outputs.Second == expected.Second
+          outputs[thread % 4]->Read();
+          same[thread] = thread % 4 == 0 ? this->Outputs.Shorts == expected.Shorts
+            : thread % 4 == 1            ? this->Outputs.Floats == expected.Floats
+            : thread % 4 == 2            ? this->Outputs.Labels == expected.Labels
                                          : this->Outputs.Coverage == expected.Coverage;
         });
     }
@@ -321,10 +321,10 @@ TEST_P(OutputOnDevice, CopiesThatFail)
     EXPECT_THROW(outputs[0]->Read(), Error) << "the second call must fail like the first one";
     EXPECT_FALSE(outputs[0]->IsOnDevice());
     EXPECT_FALSE(outputs[0]->IsRead());
-    EXPECT_EQ(std::count(this->Outputs.First.begin(), this->Outputs.First.end(), 3),
-      static_cast<std::ptrdiff_t>(this->Outputs.First.size()));
-    Read({ outputs[1], outputs[2] });
-    EXPECT_TRUE(this->Outputs.Second == expected.Second);
+    EXPECT_EQ(std::count(this->Outputs.Shorts.begin(), this->Outputs.Shorts.end(), 3),
+      static_cast<std::ptrdiff_t>(this->Outputs.Shorts.size()));
+    Read({ outputs[1], outputs[2], outputs[3] });
+    EXPECT_TRUE(this->Outputs.Floats == expected.Floats);
     // The deformer can still be used.
     this->At(6, 3, 2)[1] += 0.5F;
     Read(this->Update().DeviceOutputs);
