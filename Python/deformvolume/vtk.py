@@ -740,9 +740,14 @@ class DeformVolume(VTKPythonAlgorithmBase):
         self._send("displacements", stamp, send_difference)
 
     def _find_warnings(self, volume):
-        """Returns the warnings of arrays of the volume, as those of the C++ class."""
+        """Returns the warnings of arrays of the volume and of the reference image, as those of the C++ class."""
         points, cells = volume.GetPointData(), volume.GetCellData()
         warnings = set()
+        if self._input(3) is not None and self._settings["OutputBoundsMode"] != self.DEFORMED_BOUNDS:
+            warnings.add(
+                "The output has the grid of the reference image on port 3. OutputBoundsMode has no effect. Disconnect "
+                "the reference image to use it."
+            )
 
         def warn(text, names, advice=""):
             if names:

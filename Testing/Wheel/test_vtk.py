@@ -508,6 +508,11 @@ class Pipeline(unittest.TestCase):
         expect('are not resampled: "c", "d". ')
         volume.GetCellData().Initialize()
         expect()
+        self.filter.SetOutputBoundsMode(self.filter.VOLUME_BOUNDS)
+        expect()
+        self.filter.SetInputDataObject(3, volume)
+        expect("OutputBoundsMode has no effect.")
+        expect()
 
     # As in the C++ filter, global and pedigree ids are not interpolated.
     def test_ids(self):
