@@ -296,7 +296,7 @@ MUTATIONS = {
     "fem-colors": ("Kernels/Elements/ElementBatches.cxx",
                    "forNodes([&](std::uint64_t& mask) { mask |= std::uint64_t(1) << color; });", "",
                    [("TestFiniteElements", "*Threads")]),
-    "fem-fused": ("Kernels/Elements/Lanes.h", '__attribute__((target("avx2")))',
+    "fem-fused": ("Kernels/Common/Lanes.h", '__attribute__((target("avx2")))',
                   '__attribute__((target("avx2,fma"), optimize("fp-contract=fast")))', [("TestElementLanes", "*")]),
     "springs-near": ("Kernels/MassSpring/MassSpringForces.cl",
                      "Dot(displacement, Plus(Plus(rest, rest), displacement)) / (length + restLength)",

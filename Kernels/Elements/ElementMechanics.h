@@ -4,8 +4,8 @@
 #define DeformVolumeElementMechanics_h
 
 #include "ElementBatches.h"
-#include "EquilibriumTypes.h"
 #include "Lanes.h"
+#include "MaterialModel.h"
 #include "SingularValues.h"
 
 #include <cstddef>

@@ -4,6 +4,7 @@
 
 #include "ElasticBody.h"
 #include "ElementResults.h"
+#include "MaterialModel.h"
 
 #include <cstdint>
 #include <functional>
@@ -11,20 +12,6 @@
 
 namespace deformvolume
 {
-
-/// How the strain energy depends on the deformation gradient F. For small strains both models equal
-/// linear elasticity.
-enum class MaterialModel
-{
-  /// Stable neo-Hookean model without a logarithmic term: mu/2 (|F|^2 - 3) - mu (J - 1) + (lambda +
-  /// mu)/2 (J - 1)^2, where J is the determinant of F. For soft tissue.
-  StableNeoHookean,
-  /// Corotational model: mu |F - R|^2 + lambda/2 tr(S - 1)^2, where F = R S and R is a rotation.
-  /// This is linear elasticity in a frame that rotates with the material. It does not preserve the
-  /// volume at large strains. As in the other model, the part of lambda above 4 mu acts on the mean
-  /// of J - 1.
-  Corotational
-};
 
 /// How accurately Solve() finds the equilibrium.
 enum class EquilibriumMode

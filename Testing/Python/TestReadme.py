@@ -55,6 +55,18 @@ pages = {page.name for page in source.glob("Documents/*.md")} - {"README.md"}
 unlisted = [page for page in sorted(pages) if f"({page})" not in read(source / "Documents/README.md")]
 assert not unlisted, f"Documents/README.md does not list {unlisted}"
 
+# A folder of the engine uses only the folders above it in the table of architecture.md.
+engine = read(source / "Documents/architecture.md").partition("## The engine\n")[2]
+table = engine.partition("| Folder |")[2].partition("\n\n")[0]
+folders = re.findall(r"^\| (\w+) \|", table, re.MULTILINE)
+headers = {path.name: path.parent.name for path in source.glob("Kernels/*/*.h")}
+assert set(headers.values()) <= set(folders), f"architecture.md does not list {set(headers.values()) - set(folders)}"
+for path in [*source.glob("Kernels/*/*.cxx"), *source.glob("Kernels/*/*.h")]:
+    for header in re.findall(r'^#include "(\w+\.h)"', read(path), re.MULTILINE):
+        used = headers.get(header, folders[0])
+        is_above = folders.index(used) <= folders.index(path.parent.name)
+        assert is_above, f"{path.relative_to(source)} includes {header} of {used}"
+
 # Options of deform-volume in commands.
 program = "".join(read(path) for path in source.glob("Examples/deform-volume/*.cxx"))
 for document in documents:
