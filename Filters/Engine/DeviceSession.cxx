@@ -2,6 +2,7 @@
 #include "DeviceSession.h"
 
 #include "Device.h"
+#include "MemoryNeeds.h"
 
 #include "vtkImageData.h"
 
@@ -71,14 +72,12 @@ void DeviceSession::CheckMemory(const VoxelGrid& voxelGrid, const std::vector<Vo
       numberOfNodes *= static_cast<std::size_t>(size);
     }
   }
-  if (method == Resampling::MeshRasterization)
-  {
-    this->Deformer.CheckRasterizationMemory(voxelGrid, arrays, outputExtent, numberOfNodes,
-      field ? 0 : deformation.GetTetrahedra().size(), heldBytes);
-    return;
-  }
-  this->Deformer.CheckMemory(voxelGrid, arrays, outputExtent, numberOfNodes,
-    field ? 0 : deformation.GetTetrahedra().size(), field, runBytes, heldBytes);
+  const bool isRasterized = method == Resampling::MeshRasterization;
+  this->Deformer.CheckMemory(
+    { voxelGrid, arrays, outputExtent, numberOfNodes,
+      field ? 0 : deformation.GetTetrahedra().size(),
+      isRasterized ? 0 : GetMappingBytes(voxelGrid, field, runBytes), isRasterized },
+    heldBytes);
 }
 
 void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeMemoryNeeds_h
 #define DeformVolumeMemoryNeeds_h
 
+#include "DeformVolumeExport.h"
 #include "Extent.h"
 #include "VolumeArray.h"
 #include "VoxelGrid.h"
@@ -25,14 +26,15 @@ struct DeformationSize
   const Extent& OutputExtent;
   std::size_t NumberOfNodes; // of the mesh, or points of a field
   std::size_t NumberOfTetrahedra;
-  std::uint64_t MappingBytes; // GetMappingBytes() and the boundary of a mesh
+  std::uint64_t MappingBytes; // GetMappingBytes() and the boundary of a mesh; 0 if rasterized
   bool IsRasterized;          // with Resampling::MeshRasterization
   bool HasDistances = false;  // boundary distances
 };
 
-/// Returns the bytes of the static mapping: of runs if runBytes is not 0, else of one link per
-/// voxel. A field has no static mapping.
-std::uint64_t GetMappingBytes(const VoxelGrid& grid, bool field, std::uint64_t runBytes);
+/// Returns the bytes of the static mapping: runBytes (GetRunBytes() of VertexRuns.h) if it is not
+/// 0, else those of one link per voxel. A field has no static mapping.
+DEFORMVOLUME_EXPORT std::uint64_t GetMappingBytes(
+  const VoxelGrid& grid, bool field, std::uint64_t runBytes);
 
 /// Throws an Error if the device has too little memory; otherwise returns the remaining bytes.
 /// outputBytesPerVoxel: of the output on the device.

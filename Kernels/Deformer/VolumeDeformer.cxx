@@ -123,22 +123,8 @@ void VolumeDeformer::SetWorkGroupSize(std::size_t size)
   this->Impl->Device.SetWorkGroupSize(size);
 }
 
-void VolumeDeformer::CheckMemory(const VoxelGrid& voxelGrid, const std::vector<VolumeArray>& arrays,
-  const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra, bool field,
-  std::uint64_t runBytes, std::uint64_t heldBytes) const
+void VolumeDeformer::CheckMemory(const DeformationSize& size, std::uint64_t heldBytes) const
 {
-  const DeformationSize size{ voxelGrid, arrays, outputExtent, numberOfNodes, numberOfTetrahedra,
-    GetMappingBytes(voxelGrid, field, runBytes), false };
-  this->Impl->Guard(
-    [&] { deformvolume::CheckMemory(this->Impl->Device, this->Impl->Budget, size, heldBytes); });
-}
-
-void VolumeDeformer::CheckRasterizationMemory(const VoxelGrid& voxelGrid,
-  const std::vector<VolumeArray>& arrays, const Extent& outputExtent, std::size_t numberOfNodes,
-  std::size_t numberOfTetrahedra, std::uint64_t heldBytes) const
-{
-  const DeformationSize size{ voxelGrid, arrays, outputExtent, numberOfNodes, numberOfTetrahedra, 0,
-    true };
   this->Impl->Guard(
     [&] { deformvolume::CheckMemory(this->Impl->Device, this->Impl->Budget, size, heldBytes); });
 }

@@ -25,6 +25,8 @@
 namespace deformvolume
 {
 
+struct DeformationSize;
+
 /// Deforms a volume on an OpenCL device. Keeps the volume, its sampling mesh and the static mapping
 /// there; each call of Deform maps the vertices and resamples.
 ///
@@ -61,19 +63,9 @@ public:
 
   /// Checks that a voxel grid, arrays and an output of these sizes fit into memory, before anything
   /// is allocated. Throws an Error with the needed and available bytes. The estimate includes what
-  /// the caller is about to allocate: the output, and the links or runs of a mesh. The values of
-  /// the arrays are not read. outputExtent: extent of the output. runBytes: GetRunBytes
-  /// (VertexRuns.h) for a mesh with runs, 0 for a mesh with links. heldBytes: memory that the
-  /// caller already holds for the output.
-  void CheckMemory(const VoxelGrid& voxelGrid, const std::vector<VolumeArray>& arrays,
-    const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
-    bool field, std::uint64_t runBytes = 0, std::uint64_t heldBytes = 0) const;
-
-  /// The same check for MeshRasterization, which needs neither links nor runs. For an inverse
-  /// field, numberOfNodes is its number of points and numberOfTetrahedra is 0.
-  void CheckRasterizationMemory(const VoxelGrid& voxelGrid, const std::vector<VolumeArray>& arrays,
-    const Extent& outputExtent, std::size_t numberOfNodes, std::size_t numberOfTetrahedra,
-    std::uint64_t heldBytes = 0) const;
+  /// the caller is about to allocate: the output, and the links or runs of a mesh. heldBytes:
+  /// memory that the caller already holds for the output.
+  void CheckMemory(const DeformationSize& size, std::uint64_t heldBytes = 0) const;
 
   /// Set the voxel grid. bytesPerVoxel: the size of a voxel in the widest array that will be set.
   /// withLinks: whether links may be set. Both decide how a volume above the allocation limit is

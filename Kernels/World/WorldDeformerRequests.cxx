@@ -7,6 +7,7 @@
 #include "Error.h"
 #include "Fading.h"
 #include "FieldFolds.h"
+#include "MemoryNeeds.h"
 #include "ParallelFor.h"
 #include "ResamplerChoice.h"
 #include "WorldBoxes.h"
@@ -201,16 +202,13 @@ void WorldDeformer::CheckMemory(
     heldBytes += GetTupleSize(array);
   }
   heldBytes = (heldBytes + 1) * static_cast<std::uint64_t>(GetNumberOfPoints(extent));
-  if (method == Resampling::MeshRasterization)
-  {
-    this->Deformer.CheckRasterizationMemory(
-      voxelGrid, arrays, extent, nodes, tetrahedra, heldBytes);
-    return;
-  }
-  const std::uint64_t runBytes =
-    isMesh ? this->Mapping.GetRunBytes(this->Mesh.GetAtRest(), this->GetMapped()) : 0;
+  const bool isRasterized = method == Resampling::MeshRasterization;
+  const std::uint64_t runBytes = isMesh && !isRasterized
+    ? this->Mapping.GetRunBytes(this->Mesh.GetAtRest(), this->GetMapped())
+    : 0;
+  const std::uint64_t mapping = isRasterized ? 0 : GetMappingBytes(voxelGrid, !isMesh, runBytes);
   this->Deformer.CheckMemory(
-    voxelGrid, arrays, extent, nodes, tetrahedra, !isMesh, runBytes, heldBytes);
+    { voxelGrid, arrays, extent, nodes, tetrahedra, mapping, isRasterized }, heldBytes);
 }
 
 Resampling WorldDeformer::ChooseMethod(

@@ -3,6 +3,7 @@
 // abort.
 #include "DeformerCase.h"
 #include "Device.h"
+#include "MemoryNeeds.h"
 
 #include <gtest/gtest.h>
 
@@ -181,8 +182,10 @@ TEST_F(DeformerUse, NotEnoughMemory)
   VoxelGrid voxelGrid;
   voxelGrid.VertexExtent = { { 0, 99, 0, 99, 0, 99 } };
   const std::string error = GetError(
-    [&] {
-      this->Deformer.CheckMemory(voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200, false);
+    [&]
+    {
+      this->Deformer.CheckMemory({ voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200,
+        GetMappingBytes(voxelGrid, false, 0), false });
     });
   EXPECT_NE(error.find("12345"), std::string::npos) << error;
   // The needed number of bytes is at least that of a volume with 4 bytes per voxel.
@@ -223,7 +226,8 @@ TEST_F(DeformerUse, NotEnoughMemoryForAFold)
     this->Deformer.SetMemoryLimit(limit);
     try
     {
-      this->Deformer.CheckMemory(folded.VoxelGrid, this->Arrays, folded.Output, nodes, 0, true);
+      this->Deformer.CheckMemory(
+        { folded.VoxelGrid, this->Arrays, folded.Output, nodes, 0, 0, false });
       enough = true;
     }
     catch (const Error&)

@@ -6,6 +6,7 @@
 #include "DeviceVolume.h"
 #include "KernelText.h"
 #include "MappingProgram.h"
+#include "MemoryNeeds.h"
 #include "SamplingMeshText.h"
 #include "VertexRuns.h"
 
@@ -607,11 +608,13 @@ TEST_F(DeformerRuns, MemoryCheckCountsRuns)
   // does not work in place. The remaining memory suffices for runs, but not for links of 16 bytes
   // per voxel.
   this->Deformer.SetMemoryLimit(voxels * 22);
-  EXPECT_NO_THROW(this->Deformer.CheckMemory(
-    voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200, false, runBytes));
-  EXPECT_THROW(
-    this->Deformer.CheckMemory(voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200, false),
-    Error);
+  const auto check = [&](std::uint64_t mapping)
+  {
+    this->Deformer.CheckMemory(
+      { voxelGrid, this->Arrays, voxelGrid.VertexExtent, 100, 200, mapping, false });
+  };
+  EXPECT_NO_THROW(check(GetMappingBytes(voxelGrid, false, runBytes)));
+  EXPECT_THROW(check(GetMappingBytes(voxelGrid, false, 0)), Error);
   this->Deformer.SetMemoryLimit(0);
   // In this case each run ends after one voxel, so runs alone would save nothing.
   Load(this->Deformer, this->Case, this->Arrays, Route::Runs);
