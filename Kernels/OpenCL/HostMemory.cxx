@@ -36,8 +36,11 @@ CopiedBox MakeBox(const Extent& whole, const Extent& part, std::size_t bytes, co
   return { { { bytes * size(0), size(1), size(2) } }, locate(whole), locate(held) };
 }
 
-void CheckWritten(cl_int error)
+void WriteStaged(StagedCopies& staged, const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  const CopiedBox& box, const void* data)
 {
+  // The data are never written to.
+  const cl_int error = staged.Copy(queue, buffer, box, const_cast<void*>(data), false);
   if (error != CL_SUCCESS)
   {
     throw cl::Error(error, "copying to the device");
@@ -128,8 +131,8 @@ PendingCopy BeginToReadRange(const cl::CommandQueue& queue, const cl::Buffer& bu
 {
   if (StagedCopies* const staged = FindStagedCopies(queue, bytes))
   {
-    return PendingCopy(
-      [=] { return staged->Read(queue, buffer, CopiedBox::MakeRange(offset, bytes), memory); });
+    return PendingCopy([=]
+      { return staged->Copy(queue, buffer, CopiedBox::MakeRange(offset, bytes), memory, true); });
   }
   cl::Event done;
   queue.enqueueReadBuffer(buffer, CL_FALSE, offset, bytes, memory, nullptr, &done);
@@ -142,7 +145,7 @@ PendingCopy BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buff
   const CopiedBox box = MakeBox(whole, part, bytes, held);
   if (StagedCopies* const staged = FindStagedCopies(queue, box.GetBytes()))
   {
-    return PendingCopy([=] { return staged->Read(queue, buffer, box, memory); });
+    return PendingCopy([=] { return staged->Copy(queue, buffer, box, memory, true); });
   }
   cl::Event done;
   queue.enqueueReadBufferRect(buffer, CL_FALSE, box.OnDevice.Origin, box.OnHost.Origin, box.Size,
@@ -159,7 +162,7 @@ void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_
     queue.enqueueWriteBuffer(buffer, CL_TRUE, offset, bytes, data);
     return;
   }
-  CheckWritten(staged->Write(queue, buffer, CopiedBox::MakeRange(offset, bytes), data));
+  WriteStaged(*staged, queue, buffer, CopiedBox::MakeRange(offset, bytes), data);
 }
 
 PendingCopy BeginToWrite(const cl::CommandQueue& queue, const cl::Buffer& buffer,
@@ -167,7 +170,7 @@ PendingCopy BeginToWrite(const cl::CommandQueue& queue, const cl::Buffer& buffer
 {
   if (StagedCopies* const staged = FindStagedCopies(queue, bytes))
   {
-    CheckWritten(staged->Write(queue, buffer, CopiedBox::MakeRange(offset, bytes), data));
+    WriteStaged(*staged, queue, buffer, CopiedBox::MakeRange(offset, bytes), data);
     return PendingCopy(cl::Event());
   }
   cl::Event done;
@@ -186,7 +189,7 @@ void WriteBox(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Ext
       box.OnDevice.Row, box.OnDevice.Plane, box.OnHost.Row, box.OnHost.Plane, memory);
     return;
   }
-  CheckWritten(staged->Write(queue, buffer, box, memory));
+  WriteStaged(*staged, queue, buffer, box, memory);
 }
 
 cl_int WaitFor(cl_event event) noexcept

@@ -218,16 +218,4 @@ cl_int StagedCopies::Copy(const cl::CommandQueue& queue, const cl::Buffer& buffe
   return CL_SUCCESS;
 }
 
-cl_int StagedCopies::Read(const cl::CommandQueue& queue, const cl::Buffer& buffer,
-  const CopiedBox& box, void* memory) noexcept
-{
-  return this->Copy(queue, buffer, box, memory, true);
-}
-
-cl_int StagedCopies::Write(const cl::CommandQueue& queue, const cl::Buffer& buffer,
-  const CopiedBox& box, const void* memory) noexcept
-{
-  return this->Copy(queue, buffer, box, const_cast<void*>(memory), false); // never written to
-}
-
 } // namespace deformvolume

@@ -32,14 +32,11 @@ public:
   /// Returns null if the driver provides no page-locked memory.
   static std::unique_ptr<StagedCopies> Make(const cl::Context& context, const cl::Device& device);
 
-  ///@{
-  /// Copies from or to a buffer, after all previous commands of the queue, and returns when the
-  /// copy is complete. Returns the OpenCL error code, or CL_SUCCESS.
-  cl_int Read(const cl::CommandQueue& queue, const cl::Buffer& buffer, const CopiedBox& box,
-    void* memory) noexcept;
-  cl_int Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, const CopiedBox& box,
-    const void* memory) noexcept;
-  ///@}
+  /// Copies a box from a buffer to memory (`reads`) or from memory to a buffer, after all previous
+  /// commands of the queue, and returns when the copy is complete. Returns the OpenCL error code,
+  /// or CL_SUCCESS.
+  cl_int Copy(const cl::CommandQueue& queue, const cl::Buffer& buffer, const CopiedBox& box,
+    void* memory, bool reads) noexcept;
 
 private:
   StagedCopies(const cl::CommandQueue& queue, const cl::Buffer& pinned, char* memory)
@@ -48,9 +45,6 @@ private:
     , Memory(memory)
   {
   }
-
-  cl_int Copy(const cl::CommandQueue& queue, const cl::Buffer& buffer, const CopiedBox& box,
-    void* memory, bool reads) noexcept;
 
   cl::CommandQueue Queue;
   cl::Buffer Pinned;
