@@ -51,12 +51,14 @@ std::int64_t RestRegions::GetNumberOfRegions() const
   return static_cast<std::int64_t>(this->Count[0]) * this->Count[1] * this->Count[2];
 }
 
-Extent RestRegions::GetVoxels(const int* regionIndex) const
+Extent RestRegions::GetVoxels(std::int64_t region) const
 {
   Extent voxels;
   for (int axis = 0; axis < 3; ++axis)
   {
-    voxels[2 * axis] = this->Volume[2 * axis] + regionIndex[axis] * this->Size;
+    const auto index = static_cast<int>(region % this->Count[axis]);
+    region /= this->Count[axis];
+    voxels[2 * axis] = this->Volume[2 * axis] + index * this->Size;
     voxels[2 * axis + 1] = std::min(voxels[2 * axis] + this->Size, this->Volume[2 * axis + 1]);
   }
   return voxels;
@@ -110,8 +112,7 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
   rest.Min -= LinkTolerance;
   rest.Max += LinkTolerance;
 
-  int begin[3];
-  int end[3];
+  Extent regions;
   for (int axis = 0; axis < 3; ++axis)
   {
     const double first = this->Volume[2 * axis];
@@ -123,50 +124,37 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
       return;
     }
     // Neighboring regions share the voxels between them.
-    begin[axis] = std::max(0, static_cast<int>(std::ceil((low - first) / this->Size)) - 1);
-    end[axis] =
+    regions[2 * axis] = std::max(0, static_cast<int>(std::ceil((low - first) / this->Size)) - 1);
+    regions[2 * axis + 1] =
       std::min(this->Count[axis] - 1, static_cast<int>(std::floor((high - first) / this->Size)));
   }
-  int regionIndex[3];
-  for (regionIndex[2] = begin[2]; regionIndex[2] <= end[2]; ++regionIndex[2])
-  {
-    for (regionIndex[1] = begin[1]; regionIndex[1] <= end[1]; ++regionIndex[1])
+  ForEachPoint(regions,
+    [&](int x, int y, int z)
     {
-      for (regionIndex[0] = begin[0]; regionIndex[0] <= end[0]; ++regionIndex[0])
+      const std::int64_t region =
+        (static_cast<std::int64_t>(z) * this->Count[1] + y) * this->Count[0] + x;
+      const IndexBounds whole = GetBox(this->GetVoxels(region));
+      const IndexBounds box{ glm::max(whole.Min, rest.Min), glm::min(whole.Max, rest.Max) };
+      // The deformation of the box is affine: its bounds follow from the center and half sizes.
+      const glm::dvec3 center = 0.5 * (box.Min + box.Max);
+      const glm::dvec3 half = 0.5 * (box.Max - box.Min);
+      const glm::dvec4 weights = map.GetAllWeights(center);
+      glm::dvec3 position(0.0);
+      for (int node = 0; node < 4; ++node)
       {
-        const Extent voxels = this->GetVoxels(regionIndex);
-        IndexBounds box;
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          box.Min[axis] = std::max<double>(voxels[2 * axis], rest.Min[axis]);
-          box.Max[axis] = std::min<double>(voxels[2 * axis + 1], rest.Max[axis]);
-        }
-        // The deformation of the box is affine: its bounds follow from the center and half sizes.
-        const glm::dvec3 center = 0.5 * (box.Min + box.Max);
-        const glm::dvec3 half = 0.5 * (box.Max - box.Min);
-        const glm::dvec4 weights = map.GetAllWeights(center);
-        glm::dvec3 position(0.0);
-        for (int node = 0; node < 4; ++node)
-        {
-          position += weights[node] * nodes[node];
-        }
-        const glm::dvec3 spread =
-          glm::abs(steps[0]) * half.x + glm::abs(steps[1]) * half.y + glm::abs(steps[2]) * half.z;
-        IndexBounds landing;
-        landing.Min = glm::max(position - spread, moved.Min);
-        landing.Max = glm::min(position + spread, moved.Max);
-        if (landing.Min.x <= landing.Max.x && landing.Min.y <= landing.Max.y &&
-          landing.Min.z <= landing.Max.z)
-        {
-          this
-            ->Bounds[(static_cast<std::int64_t>(regionIndex[2]) * this->Count[1] + regionIndex[1]) *
-                this->Count[0] +
-              regionIndex[0]]
-            .Add(landing);
-        }
+        position += weights[node] * nodes[node];
       }
-    }
-  }
+      const glm::dvec3 spread =
+        glm::abs(steps[0]) * half.x + glm::abs(steps[1]) * half.y + glm::abs(steps[2]) * half.z;
+      IndexBounds landing;
+      landing.Min = glm::max(position - spread, moved.Min);
+      landing.Max = glm::min(position + spread, moved.Max);
+      if (landing.Min.x <= landing.Max.x && landing.Min.y <= landing.Max.y &&
+        landing.Min.z <= landing.Max.z)
+      {
+        this->Bounds[region].Add(landing);
+      }
+    });
 }
 
 RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& field)
@@ -177,12 +165,8 @@ RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& fi
     {
       for (std::int64_t region = first; region < last; ++region)
       {
-        const int regionIndex[3] = { static_cast<int>(region % this->Count[0]),
-          static_cast<int>(region / this->Count[0] % this->Count[1]),
-          static_cast<int>(region / this->Count[0] / this->Count[1]) };
-        const Extent voxels = this->GetVoxels(regionIndex);
-        std::int64_t low[3];
-        std::int64_t high[3];
+        const Extent voxels = this->GetVoxels(region);
+        Extent points;
         bool hasOutside = false;
         for (int axis = 0; axis < 3; ++axis)
         {
@@ -198,29 +182,22 @@ RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& fi
           constexpr double margin = 0.25;
           const double end = field.Dimensions[axis] - 1;
           hasOutside = hasOutside || from < 0.0 || to > end;
-          low[axis] = static_cast<std::int64_t>(glm::clamp(std::floor(from - margin), 0.0, end));
-          high[axis] = static_cast<std::int64_t>(glm::clamp(std::ceil(to + margin), 0.0, end));
+          points[2 * axis] = static_cast<int>(glm::clamp(std::floor(from - margin), 0.0, end));
+          points[2 * axis + 1] = static_cast<int>(glm::clamp(std::ceil(to + margin), 0.0, end));
         }
         IndexBounds displacement;
         if (hasOutside && IsFading(field))
         {
           displacement.Add(glm::dvec3(0.0));
         }
-        for (std::int64_t z = low[2]; z <= high[2]; ++z)
-        {
-          for (std::int64_t y = low[1]; y <= high[1]; ++y)
+        ForEachPoint(points,
+          [&](int x, int y, int z)
           {
-            for (std::int64_t x = low[0]; x <= high[0]; ++x)
-            {
-              displacement.Add(
-                GetVector(field, (z * field.Dimensions[1] + y) * field.Dimensions[0] + x));
-            }
-          }
-        }
+            const std::int64_t row = static_cast<std::int64_t>(z) * field.Dimensions[1] + y;
+            displacement.Add(GetVector(field, row * field.Dimensions[0] + x));
+          });
         IndexBounds& bounds = this->Bounds[region];
-        const IndexBounds rest =
-          this->Transform.ToOutput(IndexBounds{ glm::dvec3(voxels[0], voxels[2], voxels[4]),
-            glm::dvec3(voxels[1], voxels[3], voxels[5]) });
+        const IndexBounds rest = this->Transform.ToOutput(GetBox(voxels));
         bounds.Add(rest.Min + displacement.Min);
         bounds.Add(rest.Max + displacement.Max);
       }
@@ -236,40 +213,23 @@ bool RestRegions::HasVoxels() const
 Extent RestRegions::Find(const Extent& part) const
 {
   Extent found{ { 0, -1, 0, -1, 0, -1 } };
-  std::int64_t region = 0;
-  int regionIndex[3];
-  for (regionIndex[2] = 0; regionIndex[2] < this->Count[2]; ++regionIndex[2])
+  for (std::int64_t region = 0; region < this->GetNumberOfRegions(); ++region)
   {
-    for (regionIndex[1] = 0; regionIndex[1] < this->Count[1]; ++regionIndex[1])
+    const IndexBounds& bounds = this->Bounds[region];
+    bool lands = !bounds.IsEmpty();
+    for (int axis = 0; axis < 3; ++axis)
     {
-      for (regionIndex[0] = 0; regionIndex[0] < this->Count[0]; ++regionIndex[0], ++region)
-      {
-        const IndexBounds& bounds = this->Bounds[region];
-        bool lands = !bounds.IsEmpty();
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          lands = lands && bounds.Min[axis] - PositionTolerance <= part[2 * axis + 1] &&
-            bounds.Max[axis] + PositionTolerance >= part[2 * axis];
-        }
-        if (!lands)
-        {
-          continue;
-        }
-        const Extent voxels = this->GetVoxels(regionIndex);
-        const bool first = GetNumberOfPoints(found) == 0;
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          int* range = &found[2 * axis];
-          range[0] = first ? voxels[2 * axis] : std::min(range[0], voxels[2 * axis]);
-          range[1] = first ? voxels[2 * axis + 1] : std::max(range[1], voxels[2 * axis + 1]);
-        }
-      }
+      lands = lands && bounds.Min[axis] - PositionTolerance <= part[2 * axis + 1] &&
+        bounds.Max[axis] + PositionTolerance >= part[2 * axis];
+    }
+    if (lands)
+    {
+      Include(found, this->GetVoxels(region));
     }
   }
   if (GetNumberOfPoints(found) == 0)
   {
-    const int corner[3] = { 0, 0, 0 };
-    found = this->GetVoxels(corner);
+    found = this->GetVoxels(0);
     for (int axis = 0; axis < 3; ++axis)
     {
       found[2 * axis + 1] = std::min(found[2 * axis + 1], found[2 * axis] + 1);

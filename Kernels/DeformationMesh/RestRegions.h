@@ -43,8 +43,7 @@ private:
   explicit RestRegions(const VoxelGrid& voxelGrid);
   std::int64_t GetNumberOfRegions() const;
   /// Returns the voxels of a region. Neighboring regions share the voxels between them.
-  /// regionIndex: index of the region on each axis.
-  Extent GetVoxels(const int* regionIndex) const;
+  Extent GetVoxels(std::int64_t region) const;
   void AddTetrahedron(const Tetrahedron& tetrahedron, const std::vector<glm::dvec3>& restPoints,
     const float* displacements);
 
