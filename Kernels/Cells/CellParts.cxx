@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CellParts.h"
 
+#include "Extent.h"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -138,19 +140,14 @@ CellParts SplitRoundCenter(const CellFaces& faces, int center)
 CellParts SplitHexahedron(const std::array<int, 3>& degrees, const NodeAt& at)
 {
   CellParts parts;
-  for (int k = 0; k < degrees[2]; ++k)
-  {
-    for (int j = 0; j < degrees[1]; ++j)
+  ForEachPoint({ { 0, degrees[0] - 1, 0, degrees[1] - 1, 0, degrees[2] - 1 } },
+    [&](int i, int j, int k)
     {
-      for (int i = 0; i < degrees[0]; ++i)
-      {
-        const auto layer = [&](int z) -> std::array<int, 4> {
-          return { { at(i, j, z), at(i + 1, j, z), at(i + 1, j + 1, z), at(i, j + 1, z) } };
-        };
-        parts.push_back(MakeHexahedron(layer(k), layer(k + 1)));
-      }
-    }
-  }
+      const auto layer = [&](int z) -> std::array<int, 4> {
+        return { { at(i, j, z), at(i + 1, j, z), at(i + 1, j + 1, z), at(i, j + 1, z) } };
+      };
+      parts.push_back(MakeHexahedron(layer(k), layer(k + 1)));
+    });
   return parts;
 }
 

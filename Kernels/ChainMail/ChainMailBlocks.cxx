@@ -80,22 +80,11 @@ Extent ChainMailBlocks::GetVoxels(std::uint32_t block) const
 void ChainMailBlocks::Append(const Extent& box, std::vector<std::uint32_t>& blocks) const
 {
   Extent range;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    range[2 * axis] = box[2 * axis] / Block;
-    range[2 * axis + 1] = box[2 * axis + 1] / Block;
-  }
-  for (int z = range[4]; z <= range[5]; ++z)
-  {
-    for (int y = range[2]; y <= range[3]; ++y)
-    {
-      for (int x = range[0]; x <= range[1]; ++x)
-      {
-        blocks.push_back(
-          static_cast<std::uint32_t>((z * this->Counts[1] + y) * this->Counts[0] + x));
-      }
-    }
-  }
+  std::transform(box.begin(), box.end(), range.begin(), [](int voxel) { return voxel / Block; });
+  ForEachPoint(range,
+    [&](int x, int y, int z) {
+      blocks.push_back(static_cast<std::uint32_t>((z * this->Counts[1] + y) * this->Counts[0] + x));
+    });
 }
 
 std::vector<Extent> ChainMailBlocks::Join(const std::vector<std::uint32_t>& blocks) const

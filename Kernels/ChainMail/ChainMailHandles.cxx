@@ -99,19 +99,14 @@ void ChainMailHandles::Select(const ChainMailBlocks& blocks, const std::array<do
   const double limit = handle.Radius * handle.Radius;
   const auto square = [&](int axis, int index)
   { return (index - at[axis]) * spacing[axis] * (index - at[axis]) * spacing[axis]; };
-  for (int z = box[4]; z <= box[5]; ++z)
-  {
-    for (int y = box[2]; y <= box[3]; ++y)
+  ForEachPoint(box,
+    [&](int x, int y, int z)
     {
-      for (int x = box[0]; x <= box[1]; ++x)
+      if (square(0, x) + square(1, y) + square(2, z) <= limit)
       {
-        if (square(0, x) + square(1, y) + square(2, z) <= limit)
-        {
-          this->Voxels.push_back({ blocks.GetVoxelIndex(x, y, z), number });
-        }
+        this->Voxels.push_back({ blocks.GetVoxelIndex(x, y, z), number });
       }
-    }
-  }
+    });
 }
 
 std::vector<std::uint32_t> ChainMailHandles::GetBlocks() const

@@ -135,18 +135,12 @@ void ChainMailLinks::Write(
     {
       for (std::size_t i = begin; i < end; ++i)
       {
-        const Extent voxels = blocks.GetVoxels(list[i]);
-        for (int z = voxels[4]; z <= voxels[5]; ++z)
-        {
-          for (int y = voxels[2]; y <= voxels[3]; ++y)
+        ForEachPoint(blocks.GetVoxels(list[i]),
+          [&](int x, int y, int z)
           {
-            for (int x = voxels[0]; x <= voxels[1]; ++x)
-            {
-              unsigned char& byte = bytes[blocks.GetVoxelIndex(x, y, z)];
-              byte = static_cast<unsigned char>((byte & ~AllBits) | this->Find(blocks, x, y, z));
-            }
-          }
-        }
+            unsigned char& byte = bytes[blocks.GetVoxelIndex(x, y, z)];
+            byte = static_cast<unsigned char>((byte & ~AllBits) | this->Find(blocks, x, y, z));
+          });
       }
     });
 }

@@ -52,16 +52,8 @@ public:
   template <typename Function>
   void ForEachCell(Function&& function) const
   {
-    for (int z = 0; z < this->Size[2]; ++z)
-    {
-      for (int y = 0; y < this->Size[1]; ++y)
-      {
-        for (int x = 0; x < this->Size[0]; ++x)
-        {
-          function(x, y, z, TetrahedronSet::GetIndex(x, y, z));
-        }
-      }
-    }
+    ForEachPoint({ { 0, this->Size[0] - 1, 0, this->Size[1] - 1, 0, this->Size[2] - 1 } },
+      [&](int x, int y, int z) { function(x, y, z, TetrahedronSet::GetIndex(x, y, z)); });
   }
 
   /// Returns the first vertex of a cell. GetSteps() returns the offsets to the next vertex on each

@@ -165,16 +165,13 @@ void DeformedFieldPositions::MarkRow(const Extent& points, std::vector<unsigned 
     }
   }
   constexpr int length = CellBricks::Length;
-  for (int z = cells[4] / length; z <= cells[5] / length; ++z)
-  {
-    for (int y = cells[2] / length; y <= cells[3] / length; ++y)
-    {
-      for (int x = cells[0] / length; x <= cells[1] / length; ++x)
-      {
-        bricks[this->GetBricks().FindBrick({ { x * length, y * length, z * length } })] = 1;
-      }
-    }
-  }
+  Extent marked;
+  std::transform(
+    cells.begin(), cells.end(), marked.begin(), [](int cell) { return cell / length; });
+  ForEachPoint(marked,
+    [&](int x, int y, int z) {
+      bricks[this->GetBricks().FindBrick({ { x * length, y * length, z * length } })] = 1;
+    });
 }
 
 } // namespace deformvolume

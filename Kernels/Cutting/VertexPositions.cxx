@@ -33,16 +33,8 @@ SnappedBox RestPositions::GetBox() const
 void RestPositions::Find(const Extent& vertices, SnappedPoint* positions, bool* hasPosition) const
 {
   std::fill_n(hasPosition, GetNumberOfPoints(vertices), true);
-  for (int z = vertices[4]; z <= vertices[5]; ++z)
-  {
-    for (int y = vertices[2]; y <= vertices[3]; ++y)
-    {
-      for (int x = vertices[0]; x <= vertices[1]; ++x)
-      {
-        *positions++ = StepsPerVoxel * SnappedPoint(x, y, z);
-      }
-    }
-  }
+  ForEachPoint(
+    vertices, [&](int x, int y, int z) { *positions++ = StepsPerVoxel * SnappedPoint(x, y, z); });
 }
 
 } // namespace deformvolume

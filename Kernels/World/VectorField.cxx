@@ -193,24 +193,18 @@ std::vector<std::size_t> VectorField::TakeVoxels(const Extent& voxels)
   {
     return taken;
   }
-  std::array<std::int64_t, 3> first{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
+  const auto get = [&](int axis, int voxel) // index of its point on an axis
   {
-    first[axis] = static_cast<std::int64_t>(this->IndexToField[4 * axis + 3]);
-  }
+    const auto first = static_cast<std::int64_t>(this->IndexToField[4 * axis + 3]);
+    return std::int64_t{ step } * voxel + first;
+  };
   taken.reserve(static_cast<std::size_t>(GetNumberOfPoints(voxels)));
-  for (std::int64_t z = voxels[4]; z <= voxels[5]; ++z)
-  {
-    for (std::int64_t y = voxels[2]; y <= voxels[3]; ++y)
+  ForEachPoint(voxels,
+    [&](int x, int y, int z)
     {
-      const std::int64_t row =
-        ((step * z + first[2]) * this->Dimensions[1] + step * y + first[1]) * this->Dimensions[0];
-      for (std::int64_t x = voxels[0]; x <= voxels[1]; ++x)
-      {
-        taken.push_back(static_cast<std::size_t>(row + step * x + first[0]));
-      }
-    }
-  }
+      const std::int64_t row = get(2, z) * this->Dimensions[1] + get(1, y);
+      taken.push_back(static_cast<std::size_t>(row * this->Dimensions[0] + get(0, x)));
+    });
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
     this->Dimensions[axis] = static_cast<int>(GetSize(voxels, static_cast<int>(axis)));
