@@ -2,6 +2,7 @@
 #include "BoxBounds.h"
 
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "MappingProgram.h"
 
 #include <algorithm>
@@ -33,13 +34,8 @@ std::vector<DisplacementBounds> FindBoxBounds(WorkDevice& device, const cl::Buff
   const QueueGuard guard(queue);
   cl::Kernel kernel(GetConversionProgram(context), "FindBoxBounds");
   const std::size_t group = device.GetGroupSize(kernel);
-  cl_uint i = 0;
-  kernel.setArg(i++, displacements);
-  kernel.setArg(i++, cl_int{ size[0] });
-  kernel.setArg(i++, cl_int{ size[1] });
-  kernel.setArg(i++, boxesThere);
-  kernel.setArg(i++, cl::Local(group * sizeof(BoundsOfAxes)));
-  kernel.setArg(i++, bounds);
+  SetArguments(kernel, 0, displacements, cl_int{ size[0] }, cl_int{ size[1] }, boxesThere,
+    cl::Local(group * sizeof(BoundsOfAxes)), bounds);
   context.Launch(queue, kernel, cl::NDRange(boxes.size() * group), cl::NDRange(group));
   queue.enqueueReadBuffer(bounds, CL_TRUE, 0, bytes, found.data());
   std::vector<DisplacementBounds> made(boxes.size());

@@ -8,6 +8,7 @@
 #include "Error.h"
 #include "FieldParameters.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "KernelText.h"
 #include "MeshChecks.h"
 #include "WorkDevice.h"
@@ -496,26 +497,17 @@ MappingForm DisplacementSource::GetMappingForm() const
 
 cl_uint DisplacementSource::SetMappingArguments(cl::Kernel& kernel, const VolumeChunk& chunk) const
 {
-  cl_uint i = 0;
-  if (this->GetMappingForm() == MappingForm::Runs)
+  const cl::Buffer& rest = this->Volume.GetRestPositions();
+  switch (this->GetMappingForm())
   {
-    kernel.setArg(i++, chunk.Runs);
-    kernel.setArg(i++, chunk.RowRanges);
-    kernel.setArg(i++, this->Volume.GetRecords().Get());
+    case MappingForm::Runs:
+      return SetArguments(
+        kernel, 0, chunk.Runs, chunk.RowRanges, this->Volume.GetRecords().Get(), rest);
+    case MappingForm::Links:
+      return SetArguments(kernel, 0, chunk.Links, this->Tetrahedra, this->Nodes.Get(), rest);
+    default:
+      return SetArguments(kernel, 0, this->GetFieldVectors(), this->Field, rest);
   }
-  else if (this->GetMappingForm() == MappingForm::Links)
-  {
-    kernel.setArg(i++, chunk.Links);
-    kernel.setArg(i++, this->Tetrahedra);
-    kernel.setArg(i++, this->Nodes.Get());
-  }
-  else
-  {
-    kernel.setArg(i++, this->GetFieldVectors());
-    kernel.setArg(i++, this->Field);
-  }
-  kernel.setArg(i++, this->Volume.GetRestPositions());
-  return i;
 }
 
 cl_uint DisplacementSource::SetPointArguments(
@@ -527,10 +519,8 @@ cl_uint DisplacementSource::SetPointArguments(
   {
     dimensions.s[axis] = this->Field.Dimensions[axis];
   }
-  kernel.setArg(argument++, mesh ? this->Tetrahedra : other);
-  kernel.setArg(argument++, mesh ? this->Nodes.Get() : this->FieldVectors.Get());
-  kernel.setArg(argument++, dimensions);
-  return argument;
+  return SetArguments(kernel, argument, mesh ? this->Tetrahedra : other,
+    mesh ? this->Nodes.Get() : this->FieldVectors.Get(), dimensions);
 }
 
 void DisplacementSource::PrepareMapping(

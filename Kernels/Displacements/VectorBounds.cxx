@@ -6,6 +6,7 @@
 #include "FieldScan.h"
 #include "GuardedCall.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "KernelText.h"
 #include "MappingProgram.h"
 
@@ -64,15 +65,9 @@ std::optional<IndexBounds> Find(
   queue.enqueueFillBuffer(number, bad, 0, sizeof(bad));
   cl::Kernel kernel(GetConversionProgram(context), "FindBounds");
   const std::size_t group = device.GetGroupSize(kernel);
-  cl_uint i = 0;
-  kernel.setArg(i++, vectors.GetBuffer());
-  kernel.setArg(i++, MakeFieldParameters(field, voxelGrid));
-  kernel.setArg(i++, parameters);
-  kernel.setArg(i++, sent);
-  kernel.setArg(i++, static_cast<cl_float>(LargestDisplacement));
-  kernel.setArg(i++, cl::Local(group * sizeof(Bounds)));
-  kernel.setArg(i++, bounds);
-  kernel.setArg(i++, number);
+  SetArguments(kernel, 0, vectors.GetBuffer(), MakeFieldParameters(field, voxelGrid), parameters,
+    sent, static_cast<cl_float>(LargestDisplacement), cl::Local(group * sizeof(Bounds)), bounds,
+    number);
   context.Launch(queue, kernel, cl::NDRange(Groups * group), cl::NDRange(group));
   copies.Add(BeginToReadRange(queue, bounds, 0, Groups * sizeof(Bounds), found.data()));
   queue.enqueueReadBuffer(number, CL_TRUE, 0, sizeof(bad), &bad);

@@ -5,6 +5,7 @@
 #include "DisplacementBuffer.h"
 #include "FieldParameters.h"
 #include "HostMemory.h"
+#include "KernelMaking.h"
 #include "KernelText.h"
 #include "MappingProgram.h"
 #include "ParallelFor.h"
@@ -35,17 +36,15 @@ public:
   {
     device.GetQueue().enqueueFillBuffer(this->FirstBad, NoPoint, 0, sizeof(NoPoint));
     this->Kernel.setArg(1, MakeMatrixParameters(field));
-    this->Kernel.setArg(4, static_cast<cl_float>(LargestDisplacement));
-    this->Kernel.setArg(5, displacements);
-    this->Kernel.setArg(6, this->FirstBad);
+    SetArguments(
+      this->Kernel, 4, static_cast<cl_float>(LargestDisplacement), displacements, this->FirstBad);
   }
 
   // Begins to convert the vectors of `count` points, beginning at point `first`.
   void Launch(const cl::Buffer& vectors, std::size_t first, std::size_t count)
   {
     this->Kernel.setArg(0, vectors);
-    this->Kernel.setArg(2, cl_ulong{ first });
-    this->Kernel.setArg(3, cl_ulong{ count });
+    SetArguments(this->Kernel, 2, cl_ulong{ first }, cl_ulong{ count });
     this->Device.Launch(this->Kernel, count);
   }
 

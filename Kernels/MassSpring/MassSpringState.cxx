@@ -87,8 +87,7 @@ MassSpringState::MassSpringState(WorkDevice& device, const MassSpringNetwork& ne
     this->Forces, this->Mobilities, this->Velocities, this->Velocities, this->Displacements,
     this->HasDiverged, MassSpringStep{}, cl_int{ 0 });
   this->MoveHandlesKernel = cl::Kernel(this->Program, "MoveHandles");
-  this->MoveHandlesKernel.setArg(1, this->Velocities);
-  this->MoveHandlesKernel.setArg(2, this->Displacements);
+  SetArguments(this->MoveHandlesKernel, 1, this->Velocities, this->Displacements);
   this->WriteOutputKernel = cl::Kernel(this->Program, "WriteOutput");
   this->WriteOutputKernel.setArg(0, this->Displacements);
   this->WriteOutputKernel.setArg(3, nodes * 3);
@@ -174,8 +173,7 @@ void MassSpringState::EnqueueStep(const MassSpringStep& step, float fraction, fl
   this->Device.Launch(this->MoveNodesKernel, this->NumberOfNodes);
   if (this->NumberOfHandles > 0)
   {
-    this->MoveHandlesKernel.setArg(3, fraction);
-    this->MoveHandlesKernel.setArg(4, rate);
+    SetArguments(this->MoveHandlesKernel, 3, fraction, rate);
     this->Device.Launch(this->MoveHandlesKernel, this->NumberOfHandles);
   }
 }
@@ -237,8 +235,7 @@ void MassSpringState::SetOutput(const std::shared_ptr<DeviceVectors>& output, fl
 void MassSpringState::WriteOutput()
 {
   const cl::CommandQueue& queue = this->Device.GetQueue();
-  this->WriteOutputKernel.setArg(1, this->Output.GetBuffer());
-  this->WriteOutputKernel.setArg(2, this->Factor);
+  SetArguments(this->WriteOutputKernel, 1, this->Output.GetBuffer(), this->Factor);
   this->Device.Launch(this->WriteOutputKernel, this->NumberOfNodes * 3);
   if (float* const memory = this->Output.GetHostMemory())
   {
