@@ -134,8 +134,9 @@ struct DeformReport
   /// A box of all output voxels that may differ from the last output: OutputExtent after a full
   /// update; smaller after an incremental update; empty if nothing changed.
   Extent ChangedExtent{ { 0, -1, 0, -1, 0, -1 } };
-  /// The time of the mapping, in seconds. 0 for the exact methods, whose kernels map and resample
-  /// together. With MeshRasterization, the time to list the tetrahedra of each part of the output.
+  /// The time of the mapping, in seconds. With the exact methods only that of the tetrahedra of
+  /// runs and of cells at the boundary, since other kernels map and resample together. With
+  /// MeshRasterization, the time to list the tetrahedra of each part of the output.
   double MappingTime = 0.0;
   /// The time of the resampling, in seconds.
   double ResamplingTime = 0.0;
