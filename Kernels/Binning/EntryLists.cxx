@@ -128,13 +128,8 @@ void EntryLists::Sort(WorkDevice& device, cl_uint tiles, ListBuffers& buffers, c
 
 std::uint64_t EntryLists::GetMemory() const
 {
-  std::uint64_t bytes = 0;
-  for (const cl::Buffer* buffer : { &this->EntryBegins, &this->Sums, &this->Keys, &this->SortedKeys,
-         &this->SortedLists, &this->Digits })
-  {
-    bytes += deformvolume::GetMemory(*buffer);
-  }
-  return bytes;
+  return deformvolume::GetMemory(
+    this->EntryBegins, this->Sums, this->Keys, this->SortedKeys, this->SortedLists, this->Digits);
 }
 
 std::uint64_t EntryLists::GetMemoryNeeded(std::uint64_t numberOfTetrahedra, std::uint64_t length)

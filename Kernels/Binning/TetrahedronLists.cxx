@@ -92,13 +92,9 @@ TetrahedronLists::Counts TetrahedronLists::Make(WorkDevice& device, const cl::Bu
 
 std::uint64_t TetrahedronLists::GetMemory() const
 {
-  std::uint64_t bytes = this->Ranges.GetMemory() + this->Entries.GetMemory();
-  for (const cl::Buffer* buffer :
-    { &this->Buffers.Boxes, &this->Buffers.Counters, &this->Buffers.Begins, &this->Buffers.Lists })
-  {
-    bytes += deformvolume::GetMemory(*buffer);
-  }
-  return bytes;
+  const ListBuffers& buffers = this->Buffers;
+  return this->Ranges.GetMemory() + this->Entries.GetMemory() +
+    deformvolume::GetMemory(buffers.Boxes, buffers.Counters, buffers.Begins, buffers.Lists);
 }
 
 std::uint64_t TetrahedronLists::GetMemoryNeeded(

@@ -75,14 +75,8 @@ std::uint64_t ChainMailState::GetNeededMemory(const ChainMailBlocks& blocks)
 
 std::uint64_t ChainMailState::GetMemory() const
 {
-  std::uint64_t bytes = 0;
-  for (const cl::Buffer* buffer :
-    { &this->Displacements, &this->Flags, &this->Links, &this->Materials, &this->Limits,
-      &this->Weights, &this->Reciprocals, &this->List, &this->Results, &this->Shared })
-  {
-    bytes += deformvolume::GetMemory(*buffer);
-  }
-  return bytes;
+  return deformvolume::GetMemory(this->Displacements, this->Flags, this->Links, this->Materials,
+    this->Limits, this->Weights, this->Reciprocals, this->List, this->Results, this->Shared);
 }
 
 void ChainMailState::Continue() const

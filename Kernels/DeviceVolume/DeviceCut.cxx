@@ -282,9 +282,8 @@ cl_uint DeviceCut::SetArguments(cl::Kernel& kernel, cl_uint argument) const
 
 std::uint64_t DeviceCut::GetMemory() const
 {
-  return deformvolume::GetMemory(this->Rows) + deformvolume::GetMemory(this->Vertices) +
-    deformvolume::GetMemory(this->Stencils) + deformvolume::GetMemory(this->Positions) +
-    deformvolume::GetMemory(this->Wanted);
+  return deformvolume::GetMemory(
+    this->Rows, this->Vertices, this->Stencils, this->Positions, this->Wanted);
 }
 
 } // namespace deformvolume

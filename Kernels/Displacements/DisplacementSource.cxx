@@ -568,8 +568,8 @@ void DisplacementSource::Visit(
 
 std::uint64_t DisplacementSource::GetMemory() const
 {
-  return deformvolume::GetMemory(this->Tetrahedra) + deformvolume::GetMemory(this->Nodes.Get()) +
-    deformvolume::GetMemory(this->FieldVectors.Get()) + this->Reading.GetMemory();
+  return this->Reading.GetMemory() +
+    deformvolume::GetMemory(this->Tetrahedra, this->Nodes.Get(), this->FieldVectors.Get());
 }
 
 } // namespace deformvolume

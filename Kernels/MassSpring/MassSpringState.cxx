@@ -33,15 +33,10 @@ std::uint64_t MassSpringState::GetNeededMemory(std::size_t nodes, std::size_t te
 
 std::uint64_t MassSpringState::GetMemory() const
 {
-  std::uint64_t bytes = 0;
-  for (const cl::Buffer* buffer : { &this->Tetrahedra, &this->Materials, &this->RestPoints,
-         &this->Begins, &this->ForceIndices, &this->Mobilities, &this->Forces, &this->Displacements,
-         &this->Velocities, &this->Loads, &this->Handles, &this->HasDiverged, &this->Sums,
-         &this->SavedDisplacements, &this->SavedVelocities })
-  {
-    bytes += deformvolume::GetMemory(*buffer);
-  }
-  return bytes;
+  return deformvolume::GetMemory(this->Tetrahedra, this->Materials, this->RestPoints, this->Begins,
+    this->ForceIndices, this->Mobilities, this->Forces, this->Displacements, this->Velocities,
+    this->Loads, this->Handles, this->HasDiverged, this->Sums, this->SavedDisplacements,
+    this->SavedVelocities);
 }
 
 MassSpringState::MassSpringState(WorkDevice& device, const MassSpringNetwork& network)

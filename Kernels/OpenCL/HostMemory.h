@@ -17,6 +17,12 @@ namespace deformvolume
 /// Returns the bytes allocated for a buffer. 0 if it is null or uses host memory
 /// (CL_MEM_USE_HOST_PTR).
 std::uint64_t GetMemory(const cl::Buffer& buffer);
+/// Returns the sum for several buffers.
+template <typename... Buffers>
+std::uint64_t GetMemory(const cl::Buffer& first, const cl::Buffer& second, const Buffers&... others)
+{
+  return ((GetMemory(first) + GetMemory(second)) + ... + GetMemory(others));
+}
 
 /// Whether kernels can work directly in host memory: on a CPU device, if the memory is aligned for
 /// its elements. The kernels need no larger alignment.

@@ -140,7 +140,7 @@ void OutputWinners::Settle(OpenCLContext& context, bool claimed, const cl::Buffe
 
 std::uint64_t OutputWinners::GetMemory() const
 {
-  return deformvolume::GetMemory(this->Keys) + deformvolume::GetMemory(this->Patches);
+  return deformvolume::GetMemory(this->Keys, this->Patches);
 }
 
 } // namespace deformvolume

@@ -306,13 +306,9 @@ void MeshRasterizer::Finish() noexcept
 
 std::uint64_t MeshRasterizer::GetMemory() const
 {
-  std::uint64_t bytes = this->Lists.GetMemory();
-  for (const cl::Buffer* buffer :
-    { &this->Tetrahedra, &this->Positions, &this->Displacements, &this->FieldVectors })
-  {
-    bytes += deformvolume::GetMemory(*buffer);
-  }
-  return bytes;
+  return this->Lists.GetMemory() +
+    deformvolume::GetMemory(
+      this->Tetrahedra, this->Positions, this->Displacements, this->FieldVectors);
 }
 
 std::uint64_t MeshRasterizer::GetMemoryNeeded(WorkDevice& device, std::uint64_t outputVoxels,

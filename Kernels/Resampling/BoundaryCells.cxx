@@ -301,13 +301,9 @@ std::size_t BoundaryCells::GetNumberOfLaunches() const
 
 std::uint64_t BoundaryCells::GetMemory() const
 {
-  std::uint64_t bytes = this->Lists.GetMemory();
-  for (const cl::Buffer* buffer : { &this->Corners, &this->Pieces, &this->Positions,
-         &this->Displacements, &this->Tiles, &this->PatchCounts })
-  {
-    bytes += deformvolume::GetMemory(*buffer);
-  }
-  return bytes;
+  return this->Lists.GetMemory() +
+    deformvolume::GetMemory(this->Corners, this->Pieces, this->Positions, this->Displacements,
+      this->Tiles, this->PatchCounts);
 }
 
 } // namespace deformvolume

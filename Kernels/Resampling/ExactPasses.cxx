@@ -468,8 +468,7 @@ void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& 
 
 std::uint64_t ExactPasses::GetMemory() const
 {
-  return deformvolume::GetMemory(this->BrickRows) +
-    deformvolume::GetMemory(this->Deferred.GetBuffer());
+  return deformvolume::GetMemory(this->BrickRows, this->Deferred.GetBuffer());
 }
 
 } // namespace deformvolume

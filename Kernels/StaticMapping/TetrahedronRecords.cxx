@@ -117,8 +117,7 @@ void TetrahedronRecords::VisitRest(const std::function<void(const double*)>& vis
 
 std::uint64_t TetrahedronRecords::GetMemory() const
 {
-  return deformvolume::GetMemory(this->Rest) + deformvolume::GetMemory(this->Owners) +
-    deformvolume::GetMemory(this->Records);
+  return deformvolume::GetMemory(this->Rest, this->Owners, this->Records);
 }
 
 } // namespace deformvolume
