@@ -66,7 +66,7 @@ void BoundaryDistances::UpdateBrick(std::size_t brick, const std::vector<const D
   std::vector<const DistanceSet::Block*> blocks;
   for (const DistanceSet* set : sets)
   {
-    if (const DistanceSet::Block* block = FindBlock(set->Bricks, set->Blocks, brick))
+    if (const DistanceSet::Block* block = FindBlock(*set, brick))
     {
       blocks.push_back(block);
     }

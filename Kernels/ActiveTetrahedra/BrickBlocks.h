@@ -12,15 +12,13 @@
 namespace deformvolume
 {
 
-/// Returns the block of a brick, or null if the brick is not listed. bricks: in ascending order,
-/// with one block each.
-template <typename Block>
-const Block* FindBlock(
-  const std::vector<std::size_t>& bricks, const std::vector<Block>& blocks, std::size_t brick)
+/// Returns the block of a brick, or null if the set does not have the brick.
+template <typename Value>
+const typename BrickSet<Value>::Block* FindBlock(const BrickSet<Value>& set, std::size_t brick)
 {
-  const auto index = std::lower_bound(bricks.begin(), bricks.end(), brick);
-  return index != bricks.end() && *index == brick
-    ? &blocks[static_cast<std::size_t>(index - bricks.begin())]
+  const auto index = std::lower_bound(set.Bricks.begin(), set.Bricks.end(), brick);
+  return index != set.Bricks.end() && *index == brick
+    ? &set.Blocks[static_cast<std::size_t>(index - set.Bricks.begin())]
     : nullptr;
 }
 

@@ -2,59 +2,47 @@
 #ifndef DeformVolumeCrossingSet_h
 #define DeformVolumeCrossingSet_h
 
-#include "CellBricks.h"
 #include "DistanceSet.h"
+#include "TetrahedronSet.h"
 
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 namespace deformvolume
 {
 
+/// The edges of the five tetrahedra of a cell that a smooth cut crosses.
+struct CrossedEdges
+{
+  /// Crossed edges: bit 6 t + k is edge k of tetrahedron t, in the order of CrossingSet::Ends.
+  std::uint32_t Edges = 0;
+  /// Bit t: an edge of tetrahedron t is crossed more than once.
+  std::uint32_t IsMultiple = 0;
+
+  /// Adds the crossings of another triangle or edit.
+  void Join(const CrossedEdges& other)
+  {
+    const std::uint32_t both = this->Edges & other.Edges;
+    for (unsigned int t = 0; t < 5; ++t)
+    {
+      this->IsMultiple |= ((both >> 6 * t & 63U) != 0 ? 1U : 0U) << t;
+    }
+    this->IsMultiple |= other.IsMultiple;
+    this->Edges |= other.Edges;
+  }
+};
+
 /// Where one smooth cut crosses a sampling mesh: the edges that the sheet crosses, and the
 /// distances of their ends from the sheet.
-struct CrossingSet
+struct CrossingSet : BrickSet<CrossedEdges>
 {
-  /// The crossed edges of the five tetrahedra of a cell.
-  struct Cell
-  {
-    /// Crossed edges: bit 6 t + k is edge k of tetrahedron t, in the order of Ends.
-    std::uint32_t Edges = 0;
-    /// Bit t: an edge of tetrahedron t is crossed more than once.
-    std::uint32_t IsMultiple = 0;
-
-    /// Adds the crossings of another triangle or edit.
-    void Join(const Cell& other)
-    {
-      const std::uint32_t both = this->Edges & other.Edges;
-      for (unsigned int t = 0; t < 5; ++t)
-      {
-        this->IsMultiple |= ((both >> 6 * t & 63U) != 0 ? 1U : 0U) << t;
-      }
-      this->IsMultiple |= other.IsMultiple;
-      this->Edges |= other.Edges;
-    }
-  };
   /// The two vertices of each edge of a tetrahedron.
   static constexpr int Ends[6][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 2 }, { 1, 3 }, { 2, 3 } };
 
-  /// One item for each cell of a brick, with the index of TetrahedronSet::GetIndex().
-  using Block = std::array<Cell, CellBricks::Cells>;
-
-  /// The bricks of cells with crossed edges, in ascending order.
-  std::vector<std::size_t> Bricks;
-  /// The block of each of these bricks.
-  std::vector<Block> Blocks;
   /// The signed distances of the ends of crossed edges from the sheet; 0 for vertices on both sides
   /// of it, infinite for all other vertices.
   DistanceSet Distances;
-
-  /// Whether no edge is crossed.
-  bool IsEmpty() const { return this->Bricks.empty(); }
 };
 
 /// The distance of a vertex that is not an end of a crossed edge.

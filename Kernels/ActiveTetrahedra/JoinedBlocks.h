@@ -14,12 +14,12 @@ namespace deformvolume
 
 /// The blocks of several edits joined, brick by brick. An added edit is joined with the existing
 /// blocks; the earlier edits are not needed. Joining must not depend on the order of edits.
-template <typename Block>
+template <typename Value>
 class JoinedBlocks
 {
 public:
-  /// An element of a block.
-  using Value = typename Block::value_type;
+  /// The values of a brick.
+  using Block = typename BrickSet<Value>::Block;
   /// Joins a value with another one.
   using Join = void (*)(Value& value, const Value& other);
 
@@ -41,11 +41,11 @@ public:
     ++this->NumberOfJoins;
   }
   /// Joins all blocks of an edit.
-  void Add(const std::vector<std::size_t>& bricks, const std::vector<Block>& blocks)
+  void Add(const BrickSet<Value>& edit)
   {
-    for (std::size_t i = 0; i < bricks.size(); ++i)
+    for (std::size_t i = 0; i < edit.Bricks.size(); ++i)
     {
-      this->Add(bricks[i], blocks[i]);
+      this->Add(edit.Bricks[i], edit.Blocks[i]);
     }
   }
   /// Removes the blocks of some bricks.
@@ -57,12 +57,11 @@ public:
     }
   }
   /// Joins the blocks of an edit, but only those of the bricks in `wanted`.
-  void Rejoin(const std::vector<std::size_t>& wanted, const std::vector<std::size_t>& bricks,
-    const std::vector<Block>& blocks)
+  void Rejoin(const std::vector<std::size_t>& wanted, const BrickSet<Value>& edit)
   {
     for (const std::size_t brick : wanted)
     {
-      if (const Block* block = FindBlock(bricks, blocks, brick))
+      if (const Block* block = FindBlock(edit, brick))
       {
         this->Add(brick, *block);
       }

@@ -237,7 +237,7 @@ std::vector<const Set*> MaskEditor::GetSets(Set Edit::*set) const
 
 void MaskEditor::Apply(const Edit& edit)
 {
-  this->Hits.Add(edit.Set.Bricks, edit.Set.Blocks);
+  this->Hits.Add(edit.Set);
   this->Update(edit.Set.Bricks);
   this->Distances.Add(edit.Distances);
   this->Update(this->Crossings.Add(edit.Crossings));
@@ -248,7 +248,7 @@ void MaskEditor::Revert(const Edit& edit)
   this->Hits.Forget(edit.Set.Bricks);
   for (const Edit& other : this->Edits)
   {
-    this->Hits.Rejoin(edit.Set.Bricks, other.Set.Bricks, other.Set.Blocks);
+    this->Hits.Rejoin(edit.Set.Bricks, other.Set);
   }
   this->Update(edit.Set.Bricks);
   this->Distances.Update(edit.Distances.Bricks, this->GetSets(&Edit::Distances));

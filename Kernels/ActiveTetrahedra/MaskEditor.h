@@ -136,8 +136,8 @@ private:
   std::list<Edit> Undone; // the edit that was undone last is at the end
   std::uint64_t LastNumber = 0;
   std::int64_t NumberOfSwitchedOff = 0;
-  std::vector<bool> Changed;                // for each brick
-  JoinedBlocks<TetrahedronSet::Block> Hits; // joined hits of all edits
+  std::vector<bool> Changed;        // for each brick
+  JoinedBlocks<unsigned char> Hits; // joined hits of all edits
   BoundaryDistances Distances;
   SmoothCrossings Crossings;
 };

@@ -64,7 +64,7 @@ void AppendBrick(DistanceSet& set, std::size_t brick)
 SmoothCrossings::SmoothCrossings(const Extent& vertices)
   : Bricks(vertices)
   , VertexBricks(deformvolume::GetVertexBricks(vertices))
-  , Cells({}, [](CrossingSet::Cell& cell, const CrossingSet::Cell& other) { cell.Join(other); })
+  , Cells({}, [](CrossedEdges& cell, const CrossedEdges& other) { cell.Join(other); })
   , VertexDistances(FarFromSheets,
       [](float& distance, const float& other) { distance = JoinSheetDistances(distance, other); })
   , Changed(this->Bricks.GetNumberOfBricks(), true)
@@ -152,8 +152,8 @@ void SmoothCrossings::SetBase(
   this->VertexDistances.Clear();
   const auto join = [this](const CrossingSet& set)
   {
-    this->Cells.Add(set.Bricks, set.Blocks);
-    this->VertexDistances.Add(set.Distances.Bricks, set.Distances.Blocks);
+    this->Cells.Add(set);
+    this->VertexDistances.Add(set.Distances);
   };
   join(this->Base);
   std::for_each(sets.begin(), sets.end(), [&](const CrossingSet* set) { join(*set); });
@@ -197,8 +197,8 @@ std::vector<std::size_t> SmoothCrossings::FindNeighbors(
 
 std::vector<std::size_t> SmoothCrossings::Add(const CrossingSet& edit)
 {
-  this->Cells.Add(edit.Bricks, edit.Blocks);
-  this->VertexDistances.Add(edit.Distances.Bricks, edit.Distances.Blocks);
+  this->Cells.Add(edit);
+  this->VertexDistances.Add(edit.Distances);
   return this->Update(edit);
 }
 
@@ -209,8 +209,8 @@ std::vector<std::size_t> SmoothCrossings::Remove(
   this->VertexDistances.Forget(edit.Distances.Bricks);
   const auto rejoin = [&](const CrossingSet& set)
   {
-    this->Cells.Rejoin(edit.Bricks, set.Bricks, set.Blocks);
-    this->VertexDistances.Rejoin(edit.Distances.Bricks, set.Distances.Bricks, set.Distances.Blocks);
+    this->Cells.Rejoin(edit.Bricks, set);
+    this->VertexDistances.Rejoin(edit.Distances.Bricks, set.Distances);
   };
   rejoin(this->Base);
   std::for_each(sets.begin(), sets.end(), [&](const CrossingSet* set) { rejoin(*set); });
@@ -254,11 +254,11 @@ void SmoothCrossings::UpdateDistances(std::size_t brick)
 void SmoothCrossings::UpdateCells(std::size_t brick)
 {
   const CrossingSet::Block* const block = this->Cells.Find(brick);
-  const CrossingSet::Block* const base = FindBlock(this->Base.Bricks, this->Base.Blocks, brick);
+  const CrossingSet::Block* const base = FindBlock(this->Base, brick);
   ForEachCell(this->Bricks, brick,
     [&](const std::array<int, 3>& cell, std::size_t index, std::size_t number)
     {
-      const CrossingSet::Cell joined = block ? (*block)[index] : CrossingSet::Cell();
+      const CrossedEdges joined = block ? (*block)[index] : CrossedEdges();
       const int mirror = this->Bricks.GetMirror(cell);
       unsigned int crossed = 0;
       unsigned int off = 0;

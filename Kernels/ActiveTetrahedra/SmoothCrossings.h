@@ -84,8 +84,8 @@ private:
   CellBricks VertexBricks;
   CrossingSet Base;
   // The base and all edits joined.
-  JoinedBlocks<CrossingSet::Block> Cells;
-  JoinedBlocks<DistanceSet::Block> VertexDistances;
+  JoinedBlocks<CrossedEdges> Cells;
+  JoinedBlocks<float> VertexDistances;
   std::vector<unsigned char> Crossed;
   std::vector<unsigned char> SwitchedOff;
   std::vector<float> Distances;

@@ -202,7 +202,7 @@ void Cross(
   triangles.ForEachNear(triangle, edit,
     [&](std::size_t index, int t, const Vertices& v, const std::array<bool, 4>& isAbove)
     {
-      CrossingSet::Cell crossed;
+      CrossedEdges crossed;
       for (unsigned int k = 0; k < 6; ++k)
       {
         const auto a = static_cast<std::size_t>(CrossingSet::Ends[k][0]);
