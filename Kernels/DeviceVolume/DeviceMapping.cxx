@@ -31,14 +31,7 @@ void DeviceMapping::SendLinks(VolumeChunk& chunk, const VertexLink* links)
 
 void DeviceMapping::SetLinks(std::vector<VolumeChunk>& chunks, const VertexLink* links)
 {
-  for (VolumeChunk& chunk : chunks)
-  {
-    chunk.Runs = chunk.RowRanges = cl::Buffer();
-  }
-  this->Rows.clear();
-  this->Records.Clear();
-  this->RunBytes = 0;
-  this->WithLinks = false; // until all links are copied
+  this->Forget(chunks); // there are no links until all are copied
   const std::int64_t voxels =
     static_cast<std::int64_t>(this->Size[0]) * this->Size[1] * this->Size[2];
   this->AllLinked = std::all_of(

@@ -81,10 +81,7 @@ DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue
 
 void DeviceVolume::SetLinks(const VertexLink* links)
 {
-  this->Masks.SetCoincidentNodes({});
-  this->SetBoundary({}, false);
-  const QueueGuard guard(this->Queue);
-  this->States.Forget();
+  this->ForgetMesh();
   this->Mapping.SetLinks(this->Chunks, links);
 }
 
