@@ -95,7 +95,7 @@ void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Buffer changed(context.GetContext(), CL_MEM_READ_WRITE, atOnce * sizeof(cl_uint));
   const QueueGuard guard(queue);
   cl::Kernel kernel(source.Program, "ExcludeBridges");
-  SetArguments(kernel, source.SetMapping(kernel), source.Owners,
+  SetArguments(kernel, source.SetMapping(kernel, chunk), source.Owners,
     source.Tetrahedra() ? source.Tetrahedra : source.Other,
     this->HasCoincidentNodes() ? this->CoincidentNodes : source.Other,
     cl_int{ this->HasCoincidentNodes() }, this->WithBoundary ? chunk.Boundary : source.Other,

@@ -8,7 +8,6 @@
 #include "VolumeChunk.h"
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace deformvolume
@@ -25,9 +24,7 @@ public:
   struct Source
   {
     cl::Program Program; // GetBridgeProgram()
-    /// Sets the arguments of the mapping, which are the first arguments of a kernel. Returns their
-    /// number.
-    std::function<cl_uint(cl::Kernel&)> SetMapping;
+    const MappingSetter& SetMapping;
     cl::Buffer Owners; // tetrahedra of the records of runs
     cl::Buffer Tetrahedra;
     cl::Buffer Active;

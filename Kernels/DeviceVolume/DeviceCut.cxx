@@ -269,7 +269,7 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   }
   cl::Kernel kernel(source.Program, "FindCutPositions");
   // Any buffer may replace a missing buffer.
-  deformvolume::SetArguments(kernel, source.SetMapping(kernel), source.State, this->Vertices,
+  deformvolume::SetArguments(kernel, source.SetMapping(kernel, chunk), source.State, this->Vertices,
     this->Stencils, this->Positions, some ? this->Wanted : this->Stencils, cl_int{ some }, begin,
     end, p);
   context.Launch(queue, kernel, items, cl::NDRange(group));

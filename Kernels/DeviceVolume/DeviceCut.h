@@ -9,7 +9,6 @@
 #include "VoxelGrid.h"
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace deformvolume
@@ -37,9 +36,7 @@ public:
   struct Source
   {
     cl::Program Program; // of the deformation mapping
-    /// Sets the arguments of the mapping, which are the first arguments of a kernel. Returns their
-    /// number.
-    std::function<cl_uint(cl::Kernel&)> SetMapping;
+    const MappingSetter& SetMapping;
     cl::Buffer State;
     cl::Buffer Active;
   };

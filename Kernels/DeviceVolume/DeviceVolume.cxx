@@ -111,8 +111,8 @@ void DeviceVolume::SetBoundary(const MeshBoundary& boundary, bool isField)
     boundary, isField, this->Shape.VertexExtent, this->Bricks.GetSubBricks());
 }
 
-std::vector<Extent> DeviceVolume::UpdateBridges(MappingForm mapping, const cl::Buffer& tetrahedra,
-  const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set)
+std::vector<Extent> DeviceVolume::UpdateBridges(
+  MappingForm mapping, const cl::Buffer& tetrahedra, const MappingSetter& set)
 {
   BridgeMask& bridges = this->Masks.GetBridges();
   std::vector<Extent> changes;
@@ -127,8 +127,7 @@ std::vector<Extent> DeviceVolume::UpdateBridges(MappingForm mapping, const cl::B
   for (VolumeChunk& chunk : this->Chunks)
   {
     bridges.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
-      { program, [&](cl::Kernel& kernel) { return set(kernel, chunk); },
-        this->HasRuns() ? this->Mapping.GetRecords().GetOwners() : other, tetrahedra,
+      { program, set, this->HasRuns() ? this->Mapping.GetRecords().GetOwners() : other, tetrahedra,
         this->Masks.GetGivenActive(chunk, other), this->Masks.HasGivenActive(), other,
         cut.IsOn() ? cut.GetRows() : other, cut.IsOn() ? cut.GetVertices() : other },
       changes);
@@ -160,8 +159,7 @@ KernelParameters DeviceVolume::GetParameters(const VolumeChunk& chunk) const
   return p;
 }
 
-void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
-  const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set)
+void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll, const MappingSetter& set)
 {
   if (this->States.AreCurrent())
   {
@@ -181,16 +179,15 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll,
   for (VolumeChunk& chunk : this->Chunks)
   {
     this->States.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
-      { mapping, [&](cl::Kernel& kernel) { return set(kernel, chunk); },
-        this->Masks.GetBlanked(chunk, other), this->Masks.HasBlanked(),
+      { mapping, set, this->Masks.GetBlanked(chunk, other), this->Masks.HasBlanked(),
         this->Masks.GetActive(chunk, other), this->Masks.GetDistances(chunk, other),
         cut.IsOn() ? cut.GetRows() : other, cut.IsOn() ? cut.GetVertices() : other });
   }
   this->States.Finish();
 }
 
-void DeviceVolume::UpdateCut(const cl::Program& mapping, const std::vector<cl_uint>* bricks,
-  const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set)
+void DeviceVolume::UpdateCut(
+  const cl::Program& mapping, const std::vector<cl_uint>* bricks, const MappingSetter& set)
 {
   DeviceCut& cut = this->Masks.GetCut();
   if (!cut.IsOn())
@@ -209,8 +206,7 @@ void DeviceVolume::UpdateCut(const cl::Program& mapping, const std::vector<cl_ui
   for (const VolumeChunk& chunk : this->Chunks)
   {
     cut.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
-      { mapping, [&](cl::Kernel& kernel) { return set(kernel, chunk); }, this->GetState(chunk),
-        this->Masks.GetActive(chunk, this->RestPositions) },
+      { mapping, set, this->GetState(chunk), this->Masks.GetActive(chunk, this->RestPositions) },
       wanted);
   }
   cut.Finish();

@@ -18,7 +18,6 @@
 #include "VolumeChunk.h"
 #include "VoxelGrid.h"
 
-#include <functional>
 #include <utility>
 
 namespace deformvolume
@@ -60,9 +59,9 @@ public:
   /// displacement field.
   void SetBoundary(const MeshBoundary& boundary, bool isField);
   /// Updates BridgeMask, if anything on which it depends has changed. Returns the boxes of cells
-  /// whose mask has changed. set: see UpdateState().
-  std::vector<Extent> UpdateBridges(MappingForm mapping, const cl::Buffer& tetrahedra,
-    const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
+  /// whose mask has changed.
+  std::vector<Extent> UpdateBridges(
+    MappingForm mapping, const cl::Buffer& tetrahedra, const MappingSetter& set);
 
   ///@{
   /// Set the static mapping. The links or runs must have been checked (CheckLinks(), CheckRuns()).
@@ -108,15 +107,13 @@ public:
   /// Updates the states of the vertices, if anything on which they depend has changed. If the
   /// deformation moves all voxels and there is no mask and no cut, no states are stored. mapping:
   /// the program of the deformation mapping. movesAll: whether a field moves all voxels; not used
-  /// for meshes. set: sets the arguments of the mapping for a chunk, which are the first arguments
-  /// of a kernel, and returns their number.
-  void UpdateState(const cl::Program& mapping, bool movesAll,
-    const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
+  /// for meshes.
+  void UpdateState(const cl::Program& mapping, bool movesAll, const MappingSetter& set);
   /// Computes the positions of the copies of vertices at a smooth cut. Call it after UpdateState(),
   /// each time that the mapping has changed. bricks: the bricks in which positions have changed
   /// (DEFORMVOLUME_BRICK_BITS); null: all.
-  void UpdateCut(const cl::Program& mapping, const std::vector<cl_uint>* bricks,
-    const std::function<cl_uint(cl::Kernel&, const VolumeChunk&)>& set);
+  void UpdateCut(
+    const cl::Program& mapping, const std::vector<cl_uint>* bricks, const MappingSetter& set);
   void ForgetState() { this->States.Forget(); }
   /// Returns the states of a chunk, or any buffer if there are none.
   const cl::Buffer& GetState(const VolumeChunk& chunk) const

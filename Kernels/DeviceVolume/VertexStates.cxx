@@ -70,7 +70,7 @@ void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
     context.GetContext(), CL_MEM_READ_WRITE, atOnce * VertexCuboids::NumberOfVertices);
   const QueueGuard guard(queue);
   cl::Kernel mark(source.Mapping, "MarkSources");
-  SetArguments(mark, source.SetMapping(mark), source.Blanked, cl_int{ source.HasBlanked },
+  SetArguments(mark, source.SetMapping(mark, chunk), source.Blanked, cl_int{ source.HasBlanked },
     source.Distances, chunk.State, list, p);
   VertexCuboids::ForAll(context, queue, sources, list,
     [&](const VertexCuboids::Launch& launch, std::size_t, std::size_t) { launch(mark); });

@@ -7,7 +7,6 @@
 #include "OpenCLContext.h"
 #include "VolumeChunk.h"
 
-#include <functional>
 #include <vector>
 
 namespace deformvolume
@@ -22,9 +21,7 @@ public:
   struct Source
   {
     cl::Program Mapping; // of the deformation mapping
-    /// Sets the arguments of the mapping, which are the first arguments of a kernel. Returns their
-    /// number.
-    std::function<cl_uint(cl::Kernel&)> SetMapping;
+    const MappingSetter& SetMapping;
     cl::Buffer Blanked;
     bool HasBlanked;
     cl::Buffer Active;

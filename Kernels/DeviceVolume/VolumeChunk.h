@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace deformvolume
@@ -30,6 +31,10 @@ struct VolumeChunk
   cl::Buffer Joined;              // mask of BridgeMask; may be null
   std::vector<cl::Buffer> Arrays; // see DeviceArrays::GetBuffers()
 };
+
+/// Sets the arguments of the deformation mapping for a chunk, which are the first arguments of a
+/// kernel. Returns their number.
+using MappingSetter = std::function<cl_uint(cl::Kernel& kernel, const VolumeChunk& chunk)>;
 
 /// Layers of an array in host memory: planes of voxels or of cells.
 struct HostLayers
