@@ -98,13 +98,7 @@ std::string VolumeDeformer::SetDevice(const std::string& request)
     [&]
     {
       impl.Budget.ForgetSystemMemory();
-      OpenCLContext& context = OpenCLContext::Get(FindDevice(request));
-      if (!impl.Device.Uses(context))
-      {
-        impl.Forget();
-        impl.Device.Use(context);
-      }
-      return impl.Device.GetDevice().Name;
+      return impl.Device.Choose(request, [&] { impl.Forget(); });
     });
 }
 

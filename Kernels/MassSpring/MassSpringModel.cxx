@@ -197,16 +197,7 @@ MassSpringModel::~MassSpringModel() = default;
 std::string MassSpringModel::SetDevice(const std::string& request)
 {
   return this->Impl->Guard(
-    [&]
-    {
-      OpenCLContext& context = OpenCLContext::Get(FindDevice(request));
-      if (!this->Impl->Device.Uses(context))
-      {
-        this->Impl->Forget();
-        this->Impl->Device.Use(context);
-      }
-      return this->Impl->Device.GetDevice().Name;
-    });
+    [&] { return this->Impl->Device.Choose(request, [&] { this->Impl->Forget(); }); });
 }
 
 void MassSpringModel::SetMemoryLimit(std::uint64_t bytes)

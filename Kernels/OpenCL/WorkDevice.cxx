@@ -16,6 +16,18 @@ void WorkDevice::Use(OpenCLContext& context)
   this->ReadQueue = cl::CommandQueue(context.GetContext(), context.GetDevice().Device);
 }
 
+const std::string& WorkDevice::Choose(
+  const std::string& request, const std::function<void()>& release)
+{
+  OpenCLContext& context = OpenCLContext::Get(FindDevice(request));
+  if (!this->Uses(context))
+  {
+    release();
+    this->Use(context);
+  }
+  return this->GetDevice().Name;
+}
+
 OpenCLContext& WorkDevice::GetContext()
 {
   if (!this->Context)

@@ -6,6 +6,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <string>
 
 namespace deformvolume
 {
@@ -17,6 +19,9 @@ public:
   /// Set the device to that of a context. The caller must release what it holds on the previous
   /// device.
   void Use(OpenCLContext& context);
+  /// Set the device of a request (FindDevice()), and returns its name. release: called if the
+  /// device changes, to release what the caller holds on the previous device.
+  const std::string& Choose(const std::string& request, const std::function<void()>& release);
   bool Uses(const OpenCLContext& context) const { return this->Context == &context; }
 
   /// Returns the context of the device. If none has been set, sets that of the default device.
