@@ -61,22 +61,16 @@ class FieldGeometry
 public:
   explicit FieldGeometry(const DisplacementField& field)
     : Last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1)
+    , Matrix(GetVoxelsToField(field))
+    , Inverse(glm::inverse(this->Matrix))
+    , Translation(field.IndexToField[3], field.IndexToField[7], field.IndexToField[11])
   {
-    const auto& matrix = field.IndexToField;
-    for (int row = 0; row < 3; ++row)
-    {
-      for (int column = 0; column < 3; ++column)
-      {
-        this->Matrix[column][row] = matrix[4 * row + column];
-      }
-      this->Translation[row] = matrix[4 * row + 3];
-    }
-    this->Inverse = glm::inverse(this->Matrix);
-    this->Invertible =
-      IsFinite(this->Inverse[0]) && IsFinite(this->Inverse[1]) && IsFinite(this->Inverse[2]);
   }
 
-  bool IsInvertible() const { return this->Invertible; }
+  bool IsInvertible() const
+  {
+    return IsFinite(this->Inverse[0]) && IsFinite(this->Inverse[1]) && IsFinite(this->Inverse[2]);
+  }
   /// Whether the voxels lie on the points of the field.
   bool IsOnGrid() const
   {
@@ -127,10 +121,9 @@ private:
     return bounds;
   }
 
-  glm::dmat3 Matrix{ 1.0 };
-  glm::dmat3 Inverse{ 1.0 };
-  glm::dvec3 Translation{ 0.0 };
-  bool Invertible = false;
+  const glm::dmat3 Matrix;
+  const glm::dmat3 Inverse;
+  const glm::dvec3 Translation;
 };
 
 // Shrinks a box to the voxels that it contains. Returns false if it contains none.

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace deformvolume
 {
@@ -134,22 +135,17 @@ void WorldMesh::UpdatePoints(const ImageGeometry& volume)
 {
   this->PointsAreOld = true;
   CheckFaults(this->PointFaults, this->Cells.Tetrahedra, "Point");
-  const std::size_t nodes = this->WorldPoints.size();
-  this->Points.resize(nodes + this->Cells.Derived.GetCount());
+  std::vector<glm::dvec3> points(this->WorldPoints.size());
   const glm::dmat4 transform = volume.GetWorldToIndex();
-  ParallelForParts(nodes, NodesAtATime,
+  ParallelForParts(points.size(), NodesAtATime,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t i = begin; i < end; ++i)
       {
-        this->Points[i] = glm::dvec3(transform * glm::dvec4(this->WorldPoints[i], 1.0));
+        points[i] = glm::dvec3(transform * glm::dvec4(this->WorldPoints[i], 1.0));
       }
     });
-  for (std::size_t i = 0; i < this->Cells.Derived.GetCount(); ++i)
-  {
-    this->Points[nodes + i] = this->Cells.Derived.Sum(
-      i, [&](std::int32_t node) { return this->Points[static_cast<std::size_t>(node)]; });
-  }
+  this->Points = this->AddDerived(std::move(points));
   ++this->ShapeVersion;
 }
 
