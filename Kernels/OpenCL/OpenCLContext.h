@@ -55,8 +55,6 @@ public:
 
   const OpenCLDevice& GetDevice() const { return this->Device; }
   const cl::Context& GetContext() const { return this->Context; }
-  /// Whether commands that may compile kernels must run within a KernelLinkerScope.
-  bool UsesOwnLinker() const { return this->OwnLinker; }
   bool HasExtension(const std::string& name) const;
   cl_uint GetNumberOfUnits() const { return this->NumberOfUnits; }
   /// Whether the driver never copies a buffer that uses host memory (CL_MEM_USE_HOST_PTR). Other
@@ -103,7 +101,7 @@ private:
 
   OpenCLDevice Device;
   cl::Context Context;
-  bool OwnLinker = false;
+  bool OwnLinker = false; // whether commands that may compile need a KernelLinkerScope
   std::string Extensions;
   cl_uint NumberOfUnits;
   std::mutex Mutex;
