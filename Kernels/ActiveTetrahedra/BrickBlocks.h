@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace deformvolume
@@ -43,22 +44,15 @@ template <typename Function>
 void ForEachCell(const CellBricks& bricks, std::size_t brick, Function&& function)
 {
   const Extent cells = bricks.GetCells(brick);
-  const std::array<int, 3>& size = bricks.GetSize();
-  for (int z = cells[4]; z <= cells[5]; ++z)
-  {
-    for (int y = cells[2]; y <= cells[3]; ++y)
+  const std::array<int, 3> size = bricks.GetSize();
+  ForEachPoint(cells,
+    [&](int x, int y, int z)
     {
-      const std::size_t row = (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
-                                static_cast<std::size_t>(y)) *
-        static_cast<std::size_t>(size[0]);
-      for (int x = cells[0]; x <= cells[1]; ++x)
-      {
-        function(std::array<int, 3>{ { x, y, z } },
-          TetrahedronSet::GetIndex(x - cells[0], y - cells[2], z - cells[4]),
-          row + static_cast<std::size_t>(x));
-      }
-    }
-  }
+      const std::int64_t row = std::int64_t{ z } * size[1] + y;
+      function(std::array<int, 3>{ { x, y, z } },
+        TetrahedronSet::GetIndex(x - cells[0], y - cells[2], z - cells[4]),
+        static_cast<std::size_t>(row * size[0] + x));
+    });
 }
 
 } // namespace deformvolume

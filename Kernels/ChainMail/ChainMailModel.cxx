@@ -26,23 +26,17 @@ namespace
 template <typename Function>
 void ForVoxels(const ChainMailBlocks& blocks, const Function& function)
 {
-  const std::array<int, 3>& size = blocks.GetSize();
+  const std::array<int, 3> size = blocks.GetSize();
   ParallelFor(0, size[2], 0,
     [&](std::int64_t first, std::int64_t last)
     {
-      for (auto z = static_cast<int>(first); z < static_cast<int>(last); ++z)
-      {
-        for (int y = 0; y < size[1]; ++y)
+      ForEachPoint(
+        { { 0, size[0] - 1, 0, size[1] - 1, static_cast<int>(first), static_cast<int>(last) - 1 } },
+        [&](int x, int y, int z)
         {
-          const std::size_t row = (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) +
-                                    static_cast<std::size_t>(y)) *
-            static_cast<std::size_t>(size[0]);
-          for (int x = 0; x < size[0]; ++x)
-          {
-            function(row + static_cast<std::size_t>(x), blocks.GetVoxelIndex(x, y, z));
-          }
-        }
-      }
+          const std::int64_t row = std::int64_t{ z } * size[1] + y;
+          function(static_cast<std::size_t>(row * size[0] + x), blocks.GetVoxelIndex(x, y, z));
+        });
     });
 }
 
