@@ -21,14 +21,22 @@ class WorkDevice;
 /// included: ExactResampler counts them when a folded volume needs them.
 struct DeformationSize
 {
+  /// The voxels of the volume.
   const VoxelGrid& Grid;
-  const std::vector<VolumeArray>& Arrays; // the values are not read
+  /// The arrays of the volume. Their values are not read.
+  const std::vector<VolumeArray>& Arrays;
+  /// The extent of the output.
   const Extent& OutputExtent;
-  std::size_t NumberOfNodes; // of the mesh, or points of a field
+  /// The number of nodes of the mesh, or of points of a field.
+  std::size_t NumberOfNodes;
+  /// The number of tetrahedra of the mesh; 0 for a field.
   std::size_t NumberOfTetrahedra;
-  std::uint64_t MappingBytes; // GetMappingBytes() and the boundary of a mesh; 0 if rasterized
-  bool IsRasterized;          // with Resampling::MeshRasterization
-  bool HasDistances = false;  // boundary distances
+  /// GetMappingBytes() and the boundary of a mesh; 0 if rasterized.
+  std::uint64_t MappingBytes;
+  /// Whether the method is Resampling::MeshRasterization.
+  bool IsRasterized;
+  /// Whether there are boundary distances.
+  bool HasDistances = false;
 };
 
 /// Returns the bytes of the static mapping: runBytes (GetRunBytes() of VertexRuns.h) if it is not
