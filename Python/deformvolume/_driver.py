@@ -1,30 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Lists OpenCL devices, and adds the driver from PyPI on systems without a driver for CPUs.
 
-The kernels use the OpenCL drivers that the system lists. If none of these is for CPUs, this module adds the driver PoCL
-of the package pocl-binary-distribution, in this process and for this package only: it sets no environment variable, and
-nothing changes for other users of OpenCL.
-
-The environment variable DEFORMVOLUME_DRIVER, which is read when devices are first needed, changes that:
-    auto            as above; the default
-    system          use only drivers that the system lists
-    pypi            always add the driver from PyPI
-    /path/lib.so    always add this driver, and not the one from PyPI
-
-Versions of PoCL before 7.2 call the program ld to link kernels. If that fails, for example without a C compiler, the
-program linker/ld of this package links the kernels of the driver that was added. DEFORMVOLUME_LINKER changes that:
-"system" never uses it, "own" always does. Only while kernels are compiled, its folder is in the environment variable
-COMPILER_PATH of the process.
-
-PoCL 3.0 of the package pocl-binary-distribution compiles its built-in functions and kernels for incompatible CPU types,
-and has no option to change that. Before anything is compiled, this package therefore sets, in memory, the member of a
-structure of PoCL that holds the CPU type of kernels. It does so only for this build of the driver (it compares the
-version, and the build ID of the library), and only if this package has added the driver.
-DEFORMVOLUME_KERNEL_PROCESSOR changes that: "auto" is the default, "driver" does not change the driver. Kernels are then
-slower, or an error says that the driver cannot compile them for this CPU.
-
-OCL_ICD_VENDORS and OCL_ICD_FILENAMES set, as for other programs, the drivers that the system lists. If one of them is
-set, no driver is added unless DEFORMVOLUME_DRIVER is set as well.
+Python/README.md describes which drivers are used, and the environment variables that change this.
 """
 
 import importlib.metadata
