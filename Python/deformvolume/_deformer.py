@@ -141,9 +141,8 @@ def _is_in_main_thread() -> bool:
 
 
 class _Calls:
-    """Counts the calls of deformers in other threads than the main thread. At exit the main thread waits for those
-    of daemon threads, which then wait for the end of the process: OpenCL must not be used while its driver is shut
-    down."""
+    """Counts the calls of deformers in other threads than the main thread. At exit the main thread waits until these
+    calls have ended. Threads that still run are then blocked: OpenCL must not be used while its driver is shut down."""
 
     def __init__(self):
         self._reset()
@@ -435,8 +434,8 @@ class Deformer:
             self._shape = tuple(extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3))
 
     def set_blanked(self, blanked: Optional[numpy.ndarray]) -> None:
-        """Sets a mask of voxels that are left out (True); axes x, y, z. None: no voxel is left out. Other masks stay
-        as they are."""
+        """Sets a mask of voxels that are left out (True); axes x, y, z. None: no voxel is left out. Other masks do not
+        change."""
         mask = None
         if blanked is not None:
             # Compared with 0 before the conversion to 8 bits, in which 256 would be 0.
