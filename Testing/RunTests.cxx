@@ -111,6 +111,7 @@ int Run(int argc, char* argv[])
   {
     return Fail(std::string("unknown argument ") + others[1]);
   }
+  std::filesystem::create_directories(GetTestArgument("-T"));
   if (!files.empty())
   {
     const std::string missing = SelectFiles(files);

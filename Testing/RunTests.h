@@ -4,7 +4,7 @@
 //
 // Usage: PROGRAM [--files=NAME,...] [-T FOLDER] [-D FOLDER] [-V FILE] [OPTION OF GOOGLETEST]...
 //   --files  run only the tests of these sources, such as --files=TestColumns,TestFolded
-//   -T       the folder for output
+//   -T       the folder for output, which is made if it does not exist
 //   -D       the folder Testing/Data
 //   -V       the baseline of a picture
 #ifndef RunTests_h
