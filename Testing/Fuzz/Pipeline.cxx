@@ -103,6 +103,9 @@ Pipeline::Pipeline(std::uint64_t seed, std::ostream& log)
   , IsLive(seed % 8 == 0)
   , Geometry(!IsLive && Random.Chance(0.3) ? fuzz::Geometry::Exact : fuzz::Geometry::Any)
 {
+  this->Parts->AnnouncesArrays = false;
+  this->Times->GetMesh = [this](double time)
+  { return this->Steps[static_cast<std::size_t>(time)]; };
   this->Volume = MakeVolume(this->Random, this->Geometry, this->IsLive, log);
   if (this->IsLive)
   {
@@ -122,7 +125,7 @@ Pipeline::Pipeline(std::uint64_t seed, std::ostream& log)
   this->StartSettings = this->Settings;
   this->MakeDeformation();
   this->VolumeInParts = !this->IsLive && this->Random.Chance(0.15);
-  this->Parts->Volume = this->Volume;
+  this->Parts->SetVolume(this->Volume);
   log << (this->VolumeInParts ? "volume from a source of parts\n" : "");
   this->Connect(this->Tested, false);
   this->ApplySettings();
@@ -188,14 +191,17 @@ void Pipeline::MakeShape()
   else if (!this->IsLive && this->Random.Chance(0.12))
   {
     this->VariesInTime = true;
-    this->Times->Steps = { mesh };
+    this->Steps = { mesh };
+    this->Times->Steps = { 0.0 };
     for (int steps = this->Random.Int(1, 3); steps > 0; --steps)
     {
       const auto step = vtkSmartPointer<vtkUnstructuredGrid>::New();
       step->ShallowCopy(mesh);
       SetDisplacements(step, this->Volume, this->Random, this->Geometry, this->Log);
-      this->Times->Steps.push_back(step);
+      this->Times->Steps.push_back(static_cast<double>(this->Steps.size()));
+      this->Steps.push_back(step);
     }
+    this->Times->LastTime = this->Times->Steps.back();
     this->Times->Modified();
     this->Time = this->Random.Int(0, 3);
     this->Log << "in time\n";
@@ -269,7 +275,7 @@ std::vector<vtkDataSet*> Pipeline::GetDeformed() const
     return GetLeaves(this->Deformation);
   }
   std::vector<vtkDataSet*> steps;
-  for (const auto& step : this->Times->Steps)
+  for (const auto& step : this->Steps)
   {
     steps.push_back(step);
   }
@@ -278,8 +284,7 @@ std::vector<vtkDataSet*> Pipeline::GetDeformed() const
 
 void Pipeline::TouchSources()
 {
-  this->Parts->Volume = this->Volume;
-  this->Parts->Modified();
+  this->Parts->SetVolume(this->Volume);
   this->Times->Modified();
   // The modification time of a composite dataset does not include those of its blocks.
   if (vtkCompositeDataSet::SafeDownCast(this->Deformation))

@@ -5,8 +5,9 @@
 
 #include "Random.h"
 #include "Settings.h"
-#include "Sources.h"
 #include "Subject.h"
+
+#include "../Sources.h"
 
 #include <vtkDataArray.h>
 #include <vtkDataObject.h>
@@ -87,7 +88,8 @@ private:
   vtkSmartPointer<vtkDataObject> Deformation;
   Form Given = Form::Displacements;
   vtkNew<PartSource> Parts;
-  vtkNew<TimeSource> Times;
+  vtkNew<TimedMesh> Times;
+  std::vector<vtkSmartPointer<vtkUnstructuredGrid>> Steps; // the meshes at the times 0, 1, 2...
   bool VolumeInParts = false;
   bool VariesInTime = false;
   double Time = 0.0;

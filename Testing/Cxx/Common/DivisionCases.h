@@ -1,120 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // For the tests of streaming and of several ranks: volumes and deformations whose result must not
-// depend on how the output is divided into pieces, and a source that makes any part of a volume.
+// depend on how the output is divided into pieces.
 #ifndef DivisionCases_h
 #define DivisionCases_h
 
 #include "FilterTesting.h"
 
+#include "../../Sources.h"
+
 #include <vtkCellData.h>
 #include <vtkDataObject.h>
-#include <vtkImageAlgorithm.h>
-#include <vtkInformation.h>
-#include <vtkInformationVector.h>
-#include <vtkObjectFactory.h>
-#include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
-
-/// Makes the requested extent of a volume, and records the extents that it has made.
-class PartSource : public vtkImageAlgorithm
-{
-public:
-  static PartSource* New();
-  vtkTypeMacro(PartSource, vtkImageAlgorithm);
-
-  void SetVolume(vtkImageData* volume)
-  {
-    this->Volume = volume;
-    this->Modified();
-  }
-  /// Whether the source sets CAN_PRODUCE_SUB_EXTENT and makes only the requested extent.
-  bool CanMakeParts = true;
-  /// Whether RequestInformation() announces the cell arrays.
-  bool AnnouncesArrays = true;
-  /// Whether the source makes an extent that differs from the requested one.
-  bool GivesOtherParts = false;
-
-  std::vector<filterTesting::Extent> Made;
-  /// The number of voxels of the largest part made so far.
-  vtkIdType GetMost() const
-  {
-    vtkIdType most = 0;
-    for (const filterTesting::Extent& extent : this->Made)
-    {
-      vtkIdType size = 1;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        size *= extent[2 * axis + 1] - extent[2 * axis] + 1;
-      }
-      most = std::max(most, size);
-    }
-    return most;
-  }
-
-protected:
-  PartSource() { this->SetNumberOfInputPorts(0); }
-
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
-  {
-    vtkInformation* info = output->GetInformationObject(0);
-    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), this->Volume->GetExtent(), 6);
-    info->Set(vtkDataObject::ORIGIN(), this->Volume->GetOrigin(), 3);
-    info->Set(vtkDataObject::SPACING(), this->Volume->GetSpacing(), 3);
-    info->Set(vtkDataObject::DIRECTION(), this->Volume->GetDirectionMatrix()->GetData(), 9);
-    vtkDataObject::SetPointDataActiveScalarInfo(info,
-      this->Volume->GetPointData()->GetScalars()->GetDataType(),
-      this->Volume->GetPointData()->GetScalars()->GetNumberOfComponents());
-    if (this->CanMakeParts)
-    {
-      info->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
-    }
-    if (this->AnnouncesArrays)
-    {
-      vtkNew<vtkInformationVector> arrays;
-      for (int i = 0; i < this->Volume->GetCellData()->GetNumberOfArrays(); ++i)
-      {
-        vtkNew<vtkInformation> array;
-        array->Set(vtkDataObject::FIELD_NAME(), this->Volume->GetCellData()->GetArrayName(i));
-        arrays->Append(array);
-      }
-      info->Set(vtkDataObject::CELL_DATA_VECTOR(), arrays);
-    }
-    return 1;
-  }
-
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
-  {
-    vtkInformation* info = output->GetInformationObject(0);
-    vtkImageData* image = vtkImageData::GetData(info);
-    filterTesting::Extent asked;
-    info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked.data());
-    image->ShallowCopy(this->Volume);
-    if (this->CanMakeParts)
-    {
-      asked[1] -= this->GivesOtherParts ? 1 : 0;
-      // In the VTK of ParaView 5.13, Crop() fails for an empty extent.
-      if (asked[0] <= asked[1] && asked[2] <= asked[3] && asked[4] <= asked[5])
-      {
-        image->Crop(asked.data());
-      }
-      else
-      {
-        image->Initialize();
-      }
-    }
-    this->Made.push_back(filterTesting::GetExtent(image));
-    return 1;
-  }
-
-  vtkSmartPointer<vtkImageData> Volume;
-};
-inline vtkStandardNewMacro(PartSource);
 
 namespace divisionCases
 {

@@ -2,64 +2,18 @@
 // A deformation that varies in time. The first update reads one time step. The whole extent of the
 // output contains the deformed volume at the time steps so far, and each requested time gives its
 // step.
-#include "FilterTesting.h"
+#include "TimedDeformation.h"
 
 #include <vtkImageShiftScale.h>
 #include <vtkInformation.h>
-#include <vtkInformationVector.h>
-#include <vtkObjectFactory.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
-#include <vtkUnstructuredGridAlgorithm.h>
 
-#include <array>
 #include <numeric>
 
 using namespace filterTesting;
 
 namespace
 {
-
-/// A lattice that moves along x by 10 voxels in each of a hundred time steps.
-class MovingLattice : public vtkUnstructuredGridAlgorithm
-{
-public:
-  static MovingLattice* New();
-  vtkTypeMacro(MovingLattice, vtkUnstructuredGridAlgorithm);
-
-  vtkSmartPointer<vtkUnstructuredGrid> Mesh;
-  int Executions = 0;
-  double Speed = 10.0;
-
-protected:
-  MovingLattice() { this->SetNumberOfInputPorts(0); }
-
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
-  {
-    std::array<double, 100> times;
-    std::iota(times.begin(), times.end(), 0.0);
-    const double range[2] = { 0.0, 99.0 };
-    vtkInformation* info = output->GetInformationObject(0);
-    info->Set(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), times.data(), 100);
-    info->Set(vtkStreamingDemandDrivenPipeline::TIME_RANGE(), range, 2);
-    return 1;
-  }
-
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
-  {
-    ++this->Executions;
-    vtkInformation* info = output->GetInformationObject(0);
-    const double time = info->Has(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP())
-      ? std::floor(info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP()))
-      : 0.0;
-    auto* grid = vtkUnstructuredGrid::GetData(output);
-    grid->ShallowCopy(this->Mesh);
-    SetDisplacements(grid, Shift(this->Speed * time, 0.0, 0.0));
-    grid->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
-    return 1;
-  }
-};
-vtkStandardNewMacro(MovingLattice);
 
 int FindCoveredStart(Deformed& deformed)
 {
@@ -78,12 +32,12 @@ int FindCoveredStart(Deformed& deformed)
 
 TEST(DeformTime, Series)
 {
-  auto volume = MakeVolume();
-  vtkNew<MovingLattice> lattice;
-  lattice->Mesh = MakeMesh(volume);
-  Deformed deformed;
-  deformed.Filter->SetInputData(volume);
-  deformed.Filter->SetDeformationConnection(lattice->GetOutputPort());
+  double speed = 10.0; // voxels in each of a hundred time steps
+  TimedDeformation deformed([&](double time) { return speed * time; }, 99.0);
+  vtkImageData* volume = deformed.Volume;
+  TimedMesh* lattice = deformed.Lattice;
+  lattice->Steps.resize(100);
+  std::iota(lattice->Steps.begin(), lattice->Steps.end(), 0.0);
   deformed.Filter->UpdateInformation();
   vtkInformation* info = deformed.Filter->GetOutputInformation(0);
   EXPECT_EQ(info->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()), 100);
@@ -96,7 +50,7 @@ TEST(DeformTime, Series)
   {
     vtkImageData* output = deformed.Filter->GetOutput();
     EXPECT_EQ(GetExtent(output), (Extent{ { first, last, 0, 8, 0, 7 } }));
-    EXPECT_EQ(FindCoveredStart(deformed), static_cast<int>(lattice->Speed * time));
+    EXPECT_EQ(FindCoveredStart(deformed), static_cast<int>(speed * time));
     EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
     EXPECT_EQ(output->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), time);
   };
@@ -117,7 +71,7 @@ TEST(DeformTime, Series)
   EXPECT_EQ(lattice->Executions, 4); // one execution for each change of the time
 
   // For another deformation the extent is computed again, at the requested time.
-  lattice->Speed = 2.0;
+  speed = 2.0;
   lattice->Modified();
   deformed.Filter->UpdateTimeStep(4.0);
   check(4.0, 17, 8);
@@ -130,7 +84,7 @@ TEST(DeformTime, Series)
   EXPECT_EQ(deformed.TakeWarning(), "");
   for (const double time : { 20.0, 40.0 })
   {
-    const int last = static_cast<int>(lattice->Speed * time) + 9;
+    const int last = static_cast<int>(speed * time) + 9;
     consumer->UpdateTimeStep(time);
     EXPECT_LT(GetExtent(consumer->GetOutput())[1], last);
     const std::string warning = deformed.TakeWarning();
