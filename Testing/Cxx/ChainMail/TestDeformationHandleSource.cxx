@@ -16,22 +16,13 @@ namespace
 
 TEST(DeformationHandleSource, Misuse)
 {
-  vtkNew<vtkDeformationHandleSource> source;
-  vtkNew<vtkTest::ErrorObserver> observer;
-  vtkNew<vtkTest::ErrorObserver> executiveObserver;
-  source->AddObserver(vtkCommand::ErrorEvent, observer);
-  source->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executiveObserver);
+  Observed<vtkDeformationHandleSource> observed;
+  vtkDeformationHandleSource* source = observed.Filter;
   source->SetPosition(0.0, std::numeric_limits<double>::quiet_NaN(), 0.0);
-  for (int repeat = 0; repeat < 2; ++repeat)
-  {
-    EXPECT_FALSE(source->GetExecutive()->Update());
-    EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "not finite"));
-    EXPECT_EQ(source->GetOutput()->GetNumberOfPoints(), 0);
-    observer->Clear();
-  }
+  observed.VerifyFailure("not finite");
   source->SetPosition(0.0, 1.0, 0.0);
   source->Update();
-  EXPECT_FALSE(observer->GetError());
+  EXPECT_FALSE(observed.Observer->GetError());
   EXPECT_EQ(source->GetOutput()->GetNumberOfPoints(), 1);
 }
 

@@ -39,40 +39,15 @@ inline vtkSmartPointer<vtkPolyData> MakeHandles(const std::vector<Handle>& handl
   return data;
 }
 
-/// A vtkChainMailDeformation of a volume, and observers of its errors and warnings.
-struct Dragged
+/// A vtkChainMailDeformation of a volume.
+struct Dragged : Observed<vtkChainMailDeformation>
 {
   explicit Dragged(vtkDataObject* volume)
   {
-    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
-    {
-      this->Filter->AddObserver(event, this->Observer);
-      this->Filter->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
-    }
     this->Filter->SetInputDataObject(volume);
     this->Filter->SetRelaxationSweeps(0);
   }
 
-  /// Updates the filter and returns its error message, or "" without an error.
-  std::string TryUpdate()
-  {
-    this->Filter->Modified();
-    this->Filter->Update();
-    std::string errors = this->Observer->GetErrorMessage();
-    EXPECT_EQ(errors.find("ERROR: "), errors.rfind("ERROR: "));
-    if (!errors.empty())
-    {
-      // The next update reports the error again, although nothing has changed.
-      this->Observer->Clear();
-      EXPECT_FALSE(this->Filter->GetExecutive()->Update());
-      EXPECT_TRUE(this->Observer->GetError());
-    }
-    this->Observer->Clear();
-    this->ExecutiveObserver->Clear();
-    EXPECT_TRUE(
-      errors.empty() || this->Filter->GetOutput()->GetPointData()->GetNumberOfArrays() == 0);
-    return errors;
-  }
   /// The displacements of the output. They may be on a device.
   vtkDataArray* GetArray()
   {
@@ -102,9 +77,6 @@ struct Dragged
     return this->Update();
   }
 
-  vtkNew<vtkChainMailDeformation> Filter;
-  vtkNew<vtkTest::ErrorObserver> Observer;
-  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
   vtkNew<vtkFloatArray> Copied;
 };
 

@@ -83,27 +83,17 @@ inline vtkSmartPointer<vtkShortArray> AddLabels(vtkImageData* volume)
   return labels;
 }
 
-/// A filter that edits active tetrahedra, and observers of its errors and warnings.
+/// A filter that edits active tetrahedra.
 template <typename FilterT>
-struct Edited
+struct Edited : Observed<FilterT>
 {
-  Edited()
-  {
-    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
-    {
-      this->Filter->AddObserver(event, this->Observer);
-      this->Filter->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
-    }
-  }
-
   /// Updates the filter and checks that it reports no error and no warning.
   void Update()
   {
     this->Filter->Update();
     EXPECT_EQ(this->Observer->GetErrorMessage(), "");
     EXPECT_EQ(this->Observer->GetWarningMessage(), "");
-    this->Observer->Clear();
-    this->ExecutiveObserver->Clear();
+    this->ClearMessages();
   }
 
   /// Updates the filter twice. Each time it must report one error that contains these words, and
@@ -111,18 +101,7 @@ struct Edited
   void Fails(const std::string& words)
   {
     this->Filter->Modified();
-    for (int repeat = 0; repeat < 2; ++repeat)
-    {
-      EXPECT_FALSE(this->Filter->GetExecutive()->Update());
-      const std::string message = this->Observer->GetErrorMessage();
-      const std::size_t first = message.find("ERROR: ");
-      EXPECT_TRUE(HasPart(message, words));
-      EXPECT_TRUE(
-        first != std::string::npos && message.find("ERROR: ", first + 1) == std::string::npos);
-      EXPECT_EQ(this->Filter->GetOutput()->GetNumberOfPoints(), 0);
-      this->Observer->Clear();
-      this->ExecutiveObserver->Clear();
-    }
+    this->VerifyFailure(words);
   }
 
   std::vector<unsigned char> CopyMask()
@@ -148,10 +127,6 @@ struct Edited
     EXPECT_EQ(this->Filter->GetNumberOfSwitchedOffTetrahedra(), off);
     return off;
   }
-
-  vtkNew<FilterT> Filter;
-  vtkNew<vtkTest::ErrorObserver> Observer;
-  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
 };
 
 /// An aborted update has an empty output and reports no error. The next update makes the edits.

@@ -4,20 +4,17 @@
 #ifndef FilterTesting_h
 #define FilterTesting_h
 
-#include "HasPart.h"
+#include "Observed.h"
 
 #include "../../Reported.h"
 
 #include "vtkDeformVolumeFilter.h"
 #include "vtkLatticeTetrahedraSource.h"
-#include "vtkTestErrorObserver.h"
 
 #include <vtkAOSDataArrayTemplate.h>
 #include <vtkCellData.h>
-#include <vtkCommand.h>
 #include <vtkDataArray.h>
 #include <vtkDataArrayRange.h>
-#include <vtkExecutive.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
@@ -154,19 +151,11 @@ inline WorldMap Shift(double x, double y, double z)
   return [=](const glm::dvec3& point) { return point + glm::dvec3(x, y, z); };
 }
 
-/// A vtkDeformVolumeFilter, and observers of its errors and warnings.
-struct Deformed
+/// A vtkDeformVolumeFilter under test.
+struct Deformed : Observed<vtkDeformVolumeFilter>
 {
-  Deformed()
-  {
-    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
-    {
-      this->Filter->AddObserver(event, this->Observer);
-      this->Filter->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
-    }
-  }
+  Deformed() = default;
   Deformed(vtkDataObject* volume, vtkDataObject* deformation)
-    : Deformed()
   {
     this->Filter->SetInputData(volume);
     this->Filter->SetDeformationData(deformation);
@@ -183,8 +172,7 @@ struct Deformed
     {
       ++count;
     }
-    this->Observer->Clear();
-    this->ExecutiveObserver->Clear();
+    this->ClearMessages();
     return count;
   }
   std::string TakeWarning()
@@ -221,9 +209,6 @@ struct Deformed
     return mask->GetComponent(id, 0) != 0.0;
   }
 
-  vtkNew<vtkDeformVolumeFilter> Filter;
-  vtkNew<vtkTest::ErrorObserver> Observer;
-  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
   std::string LastError;
 };
 

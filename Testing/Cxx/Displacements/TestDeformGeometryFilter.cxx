@@ -42,19 +42,10 @@ constexpr int Discard = vtkDeformGeometryFilter::DISCARD;
 constexpr int Extrapolate = vtkDeformGeometryFilter::EXTRAPOLATE;
 constexpr int Keep = vtkDeformGeometryFilter::KEEP;
 
-// A vtkDeformGeometryFilter, and observers of its errors and warnings.
-struct Subject
+struct Subject : Observed<vtkDeformGeometryFilter>
 {
-  Subject()
-  {
-    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
-    {
-      this->Filter->AddObserver(event, this->Observer);
-      this->Filter->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
-    }
-  }
+  Subject() = default;
   Subject(vtkDataObject* points, vtkDataObject* deformation)
-    : Subject()
   {
     this->Filter->SetInputData(points);
     this->Filter->SetDeformationData(deformation);
@@ -65,8 +56,7 @@ struct Subject
     this->Filter->Update();
     EXPECT_FALSE(this->Observer->GetError()) << this->Observer->GetErrorMessage();
     this->Warning = this->Observer->GetWarningMessage();
-    this->Observer->Clear();
-    this->ExecutiveObserver->Clear();
+    this->ClearMessages();
     return this->Filter->GetOutput();
   }
   std::vector<glm::dvec3> GetPositions()
@@ -85,9 +75,6 @@ struct Subject
     return mask && mask->GetDataType() == VTK_CHAR && mask->GetComponent(id, 0) != 0.0;
   }
 
-  vtkNew<vtkDeformGeometryFilter> Filter;
-  vtkNew<vtkTest::ErrorObserver> Observer;
-  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
   std::string Warning;
 };
 
@@ -210,17 +197,7 @@ public:
 
   void Expect(const std::string& text)
   {
-    for (int repeat = 0; repeat < 2; ++repeat) // nothing changes before the second update
-    {
-      EXPECT_FALSE(this->Tested.Filter->GetExecutive()->Update());
-      const std::string message = this->Tested.Observer->GetErrorMessage();
-      EXPECT_TRUE(HasPart(message, text));
-      EXPECT_TRUE(HasPart(message, "ERROR: "));
-      EXPECT_EQ(message.find("ERROR: "), message.rfind("ERROR: "));
-      this->Tested.Observer->Clear();
-      this->Tested.ExecutiveObserver->Clear();
-      EXPECT_EQ(this->Tested.Filter->GetOutput()->GetNumberOfPoints(), 0);
-    }
+    this->Tested.VerifyFailure(text);
     this->Restore();
     const glm::dvec3 moved = GetPoint(this->Tested.Update(), 3);
     EXPECT_LT(glm::length(moved - GetPoint(this->Points, 3) - glm::dvec3(1.0, 2.0, 3.0)), 1e-6);

@@ -33,23 +33,23 @@ void CheckCut(const std::function<void(Simulated<Filter>&)>& settle)
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
   Simulated<Filter> simulated(bar);
-  simulated.Object->SetLengthUnitToMillimetre();
-  simulated.Object->SetPoissonRatio(0.4);
+  simulated.Filter->SetLengthUnitToMillimetre();
+  simulated.Filter->SetPoissonRatio(0.4);
   settle(simulated);
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
-  simulated.Object->SetSheetData(MakeSheet(50.0, 0.0)); // does not intersect the bar
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 0);
+  simulated.Filter->SetSheetData(MakeSheet(50.0, 0.0)); // does not intersect the bar
   settle(simulated);
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
-  EXPECT_EQ(simulated.Object->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter>);
-  simulated.Object->SetSheetData(MakeSheet(5.0, 15.0));
-  simulated.Object->SetHandlesData(
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 0);
+  EXPECT_EQ(simulated.Filter->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter>);
+  simulated.Filter->SetSheetData(MakeSheet(5.0, 15.0));
+  simulated.Filter->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.0, 5.0, 30.0), glm::dvec3(-4.0, 5.0, 30.0) },
       { glm::dvec3(10.0, 5.0, 30.0), glm::dvec3(14.0, 5.0, 30.0) } }));
-  simulated.Object->SetHandleRadius(2.6);
+  simulated.Filter->SetHandleRadius(2.6);
   settle(simulated);
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 1);
-  EXPECT_EQ(simulated.Object->GetNumberOfSplitFaces(), 48);
-  vtkUnstructuredGrid* output = simulated.Object->GetOutput();
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 1);
+  EXPECT_EQ(simulated.Filter->GetNumberOfSplitFaces(), 48);
+  vtkUnstructuredGrid* output = simulated.Filter->GetOutput();
   // The nodes of 4 x 6 squares, each divided by a diagonal, without the five corners and the four
   // edges at the end of the cut.
   const vtkIdType appended = output->GetNumberOfPoints() - NodesOfBar<Filter>;
@@ -65,7 +65,7 @@ void CheckCut(const std::function<void(Simulated<Filter>&)>& settle)
   volume->GetPointData()->GetScalars()->Fill(100.0);
   vtkNew<vtkDeformVolumeFilter> deform;
   deform->SetInputData(volume);
-  deform->SetDeformationConnection(simulated.Object->GetOutputPort());
+  deform->SetDeformationConnection(simulated.Filter->GetOutputPort());
   deform->OpenSplitsOn();
   deform->Update();
   // The gap between the sides is empty. Below the cut there is no gap.
@@ -82,22 +82,22 @@ void CheckCut(const std::function<void(Simulated<Filter>&)>& settle)
   EXPECT_EQ(getValue(5.0, 5.0, 5.0), 100.0);
 
   // The cut is kept when materials change. Then it is undone, and another sheet makes the same cut.
-  simulated.Object->SetYoungModulus(2e4);
+  simulated.Filter->SetYoungModulus(2e4);
   settle(simulated);
-  EXPECT_EQ(simulated.Object->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter> + appended);
-  simulated.Object->UndoCut();
+  EXPECT_EQ(simulated.Filter->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter> + appended);
+  simulated.Filter->UndoCut();
   settle(simulated);
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
-  EXPECT_EQ(simulated.Object->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter>);
-  simulated.Object->Reset();
-  simulated.Object->SetHandlesData(nullptr);
-  simulated.Object->SetSheetData(MakeSheet(5.0, 15.5));
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 0);
+  EXPECT_EQ(simulated.Filter->GetOutput()->GetNumberOfPoints(), NodesOfBar<Filter>);
+  simulated.Filter->Reset();
+  simulated.Filter->SetHandlesData(nullptr);
+  simulated.Filter->SetSheetData(MakeSheet(5.0, 15.5));
   settle(simulated);
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 1);
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 1);
   EXPECT_LT(simulated.Copy()->GetRange(-1)[1], 1e-4);
-  simulated.Object->ClearCuts();
+  simulated.Filter->ClearCuts();
   settle(simulated);
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 0);
 }
 
 // A piece that nothing holds after a cut falls in mass-spring dynamics. Finite elements freeze it,
@@ -115,20 +115,20 @@ TEST(ElasticCuts, Pieces)
   sheet->SetPoints(points);
   sheet->SetPolys(triangles);
   Simulated<vtkMassSpringDeformation> springs(bar);
-  springs.Object->SetSheetData(sheet);
-  springs.Object->SetGravity(0.0, 0.0, 9.81);
-  springs.Object->SetDamping(0.0);
+  springs.Filter->SetSheetData(sheet);
+  springs.Filter->SetGravity(0.0, 0.0, 9.81);
+  springs.Filter->SetDamping(0.0);
   const auto fallen = springs.At(0.1);
   const double top = fallen->GetComponent(324, 2);
   EXPECT_LT(std::abs(top - 0.5 * 9.81 * 0.01), 0.01 * top);
   Simulated<vtkFiniteElementDeformation> elements(bar);
-  elements.Object->SetSheetData(sheet);
-  elements.Object->SetGravity(0.0, 0.0, 9.81);
-  elements.Object->Update();
+  elements.Filter->SetSheetData(sheet);
+  elements.Filter->SetGravity(0.0, 0.0, 9.81);
+  elements.Filter->Update();
   EXPECT_TRUE(HasPart(elements.Observer->GetWarningMessage(),
     "1 pieces of the mesh are not held. The tetrahedron with the points "));
   elements.Observer->Clear();
-  EXPECT_EQ(elements.Object->GetNumberOfFrozenPieces(), 1);
+  EXPECT_EQ(elements.Filter->GetNumberOfFrozenPieces(), 1);
   EXPECT_EQ(elements.Copy()->GetComponent(324, 2), 0.0F);
   EXPECT_GT(elements.Copy()->GetRange(-1)[1], 0.0);
 }
@@ -163,8 +163,8 @@ void CheckFailedCuts()
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
   const auto prepare = [](Simulated<Filter>& simulated)
   {
-    simulated.Object->SetLengthUnitToMillimetre();
-    simulated.Object->SetHandleRadius(3.0);
+    simulated.Filter->SetLengthUnitToMillimetre();
+    simulated.Filter->SetHandleRadius(3.0);
     EXPECT_EQ(simulated.TryUpdate(), "");
   };
   const auto handles =
@@ -172,20 +172,20 @@ void CheckFailedCuts()
   const auto sheet = MakeSheet(5.0, 15.0);
   Simulated<Filter> expected(bar);
   prepare(expected);
-  expected.Object->SetSheetData(sheet);
-  expected.Object->SetHandlesData(handles);
+  expected.Filter->SetSheetData(sheet);
+  expected.Filter->SetHandlesData(handles);
   EXPECT_EQ(expected.TryUpdate(), "");
-  EXPECT_GT(expected.Object->GetNumberOfSplitFaces(), 0);
+  EXPECT_GT(expected.Filter->GetNumberOfSplitFaces(), 0);
 
   Simulated<Filter> simulated(bar);
   prepare(simulated);
-  simulated.Object->SetSheetData(sheet);
-  simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(1e3), glm::dvec3(1e3) } }));
+  simulated.Filter->SetSheetData(sheet);
+  simulated.Filter->SetHandlesData(MakeHandles({ { glm::dvec3(1e3), glm::dvec3(1e3) } }));
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "holds no node that could move"));
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
-  simulated.Object->SetHandlesData(handles);
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 0);
+  simulated.Filter->SetHandlesData(handles);
   EXPECT_EQ(simulated.TryUpdate(), "");
-  EXPECT_EQ(simulated.Object->GetNumberOfSplitFaces(), expected.Object->GetNumberOfSplitFaces());
+  EXPECT_EQ(simulated.Filter->GetNumberOfSplitFaces(), expected.Filter->GetNumberOfSplitFaces());
   EXPECT_EQ(simulated.Copy()->GetNumberOfTuples(), expected.Copy()->GetNumberOfTuples());
   for (vtkIdType i = 0; i < expected.Copy()->GetNumberOfValues(); ++i)
   {
@@ -198,23 +198,23 @@ TEST(ElasticCuts, FailedCutAfterOthers)
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
   Simulated<vtkFiniteElementDeformation> simulated(bar);
-  simulated.Object->SetLengthUnitToMillimetre();
-  simulated.Object->SetHandleRadius(3.0);
+  simulated.Filter->SetLengthUnitToMillimetre();
+  simulated.Filter->SetHandleRadius(3.0);
   const auto handles =
     MakeHandles({ { glm::dvec3(10.0, 5.0, 30.0), glm::dvec3(14.0, 5.0, 31.0) } });
-  simulated.Object->SetHandlesData(handles);
-  simulated.Object->SetSheetData(MakeSheet(5.0, 15.0));
+  simulated.Filter->SetHandlesData(handles);
+  simulated.Filter->SetSheetData(MakeSheet(5.0, 15.0));
   EXPECT_EQ(simulated.TryUpdate(), "");
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 1);
-  simulated.Object->UndoCut();
-  simulated.Object->Reset();
-  simulated.Object->SetSheetData(MakeSheet(5.0, 20.0));
-  simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(1e3), glm::dvec3(1e3) } }));
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 1);
+  simulated.Filter->UndoCut();
+  simulated.Filter->Reset();
+  simulated.Filter->SetSheetData(MakeSheet(5.0, 20.0));
+  simulated.Filter->SetHandlesData(MakeHandles({ { glm::dvec3(1e3), glm::dvec3(1e3) } }));
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "holds no node that could move"));
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 0);
-  simulated.Object->SetHandlesData(nullptr);
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 0);
+  simulated.Filter->SetHandlesData(nullptr);
   EXPECT_EQ(simulated.TryUpdate(), "");
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 1);
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 1);
   EXPECT_EQ(simulated.Copy()->GetRange(-1)[1], 0.0);
 }
 
@@ -224,7 +224,7 @@ void CheckCutsOfCuts()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
   Simulated<Filter> simulated(bar);
-  simulated.Object->SetLengthUnitToMillimetre();
+  simulated.Filter->SetLengthUnitToMillimetre();
   const auto cut = [&](double x, double from, bool isTurned)
   {
     const auto sheet = MakeSheet(x, from);
@@ -233,21 +233,21 @@ void CheckCutsOfCuts()
       const glm::dvec3 point = GetPoint(sheet, id);
       sheet->GetPoints()->SetPoint(id, point.y, point.x, point.z);
     }
-    simulated.Object->SetSheetData(sheet);
+    simulated.Filter->SetSheetData(sheet);
     EXPECT_EQ(simulated.TryUpdate(), "");
-    VerifyRestMesh(simulated.Object->GetOutput(), bar);
-    return simulated.Object->GetOutput()->GetNumberOfPoints();
+    VerifyRestMesh(simulated.Filter->GetOutput(), bar);
+    return simulated.Filter->GetOutput()->GetNumberOfPoints();
   };
   const vtkIdType once = cut(5.0, 15.0, false);
   const vtkIdType twice = cut(5.0, 15.0, true);
   const vtkIdType thrice = cut(2.6, 15.0, true);
   EXPECT_TRUE(once > NodesOfBar<Filter> && twice > once && thrice > twice);
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 3);
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 3);
 
   // The last cut is undone and another one is made in one update: the number of cuts is the same.
-  simulated.Object->UndoCut();
+  simulated.Filter->UndoCut();
   const vtkIdType other = cut(2.6, 22.5, true);
-  EXPECT_EQ(simulated.Object->GetNumberOfCuts(), 3);
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 3);
   EXPECT_TRUE(other > twice && other < thrice);
 }
 
@@ -270,14 +270,14 @@ TEST(ElasticCuts, Cut)
   CheckCut<vtkMassSpringDeformation>(
     [](Simulated<vtkMassSpringDeformation>& simulated)
     {
-      simulated.Object->SetDamping(30.0);
-      simulated.Object->SetFrameTime(0.5);
+      simulated.Filter->SetDamping(30.0);
+      simulated.Filter->SetFrameTime(0.5);
       EXPECT_EQ(simulated.TryUpdate(), "");
     });
   CheckCut<vtkFiniteElementDeformation>(
     [](Simulated<vtkFiniteElementDeformation>& simulated)
     {
-      simulated.Object->SetModeToConverged();
+      simulated.Filter->SetModeToConverged();
       EXPECT_EQ(simulated.TryUpdate(), "");
     });
 }

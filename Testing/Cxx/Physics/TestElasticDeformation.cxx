@@ -41,9 +41,9 @@ void CheckMisuse()
   {
     vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeBar(1.0);
     change(mesh.Get());
-    simulated.Object->SetInputData(mesh);
+    simulated.Filter->SetInputData(mesh);
     const std::string errors = simulated.TryUpdate();
-    simulated.Object->SetInputData(bar);
+    simulated.Filter->SetInputData(bar);
     return errors;
   };
   EXPECT_TRUE(
@@ -92,35 +92,35 @@ void CheckMisuse()
     EXPECT_TRUE(
       HasPart(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, nan, 1); }), "tetrahedron 0"));
   }
-  simulated.Object->SetYoungModulus(0.0);
+  simulated.Filter->SetYoungModulus(0.0);
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "Young modulus"));
-  simulated.Object->SetYoungModulus(1e4);
-  simulated.Object->SetPoissonRatio(0.495);
+  simulated.Filter->SetYoungModulus(1e4);
+  simulated.Filter->SetPoissonRatio(0.495);
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "Poisson ratio"));
-  simulated.Object->SetPoissonRatio(0.3);
-  simulated.Object->SetDensity(0.0);
+  simulated.Filter->SetPoissonRatio(0.3);
+  simulated.Filter->SetDensity(0.0);
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "density"));
-  simulated.Object->SetDensity(1000.0);
-  simulated.Object->SetGravity(0.0, nan, 0.0);
+  simulated.Filter->SetDensity(1000.0);
+  simulated.Filter->SetGravity(0.0, nan, 0.0);
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "gravity"));
-  simulated.Object->SetGravity(0.0, 0.0, 0.0);
+  simulated.Filter->SetGravity(0.0, 0.0, 0.0);
 
   vtkSmartPointer<vtkPolyData> handles =
     MakeHandles({ { glm::dvec3(0.005, 0.005, 0.03), glm::dvec3(0.005, 0.005, 0.031) } });
-  simulated.Object->SetHandlesData(handles);
+  simulated.Filter->SetHandlesData(handles);
   EXPECT_EQ(simulated.TryUpdate(), "");
-  EXPECT_EQ(simulated.Object->GetNumberOfHeldNodes(), 1);
+  EXPECT_EQ(simulated.Filter->GetNumberOfHeldNodes(), 1);
   handles->GetPointData()->RemoveArray("RestPosition");
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "no point array \"RestPosition\""));
-  simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(0.0), glm::dvec3(0.001) } }));
+  simulated.Filter->SetHandlesData(MakeHandles({ { glm::dvec3(0.0), glm::dvec3(0.001) } }));
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "holds no node that could move"));
-  simulated.Object->SetHandleRadius(0.001);
-  simulated.Object->SetHandlesData(MakeHandles({ { glm::dvec3(1.0), glm::dvec3(1.0) } }));
+  simulated.Filter->SetHandleRadius(0.001);
+  simulated.Filter->SetHandlesData(MakeHandles({ { glm::dvec3(1.0), glm::dvec3(1.0) } }));
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "holds no node that could move"));
-  simulated.Object->SetHandlesData(
+  simulated.Filter->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.01, 0.01, 0.03), glm::dvec3(nan) } }));
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "Point 0 of the handles"));
-  simulated.Object->SetHandlesData(nullptr);
+  simulated.Filter->SetHandlesData(nullptr);
   EXPECT_EQ(simulated.TryUpdate(), "");
 }
 
@@ -128,27 +128,27 @@ TEST(ElasticDeformation, ErrorsOfSubclasses)
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<vtkMassSpringDeformation> springs(bar);
-  EXPECT_EQ(springs.Object->GetStableTimeStep(), 0.0);
+  EXPECT_EQ(springs.Filter->GetStableTimeStep(), 0.0);
   EXPECT_EQ(springs.TryUpdate(), "");
-  const double stable = springs.Object->GetStableTimeStep();
+  const double stable = springs.Filter->GetStableTimeStep();
   EXPECT_TRUE(stable > 1e-5 && stable < 1e-2);
-  springs.Object->SetTimeStep(1.05 * stable);
+  springs.Filter->SetTimeStep(1.05 * stable);
   EXPECT_TRUE(HasPart(springs.TryUpdate(), "longer than the stable one"));
-  springs.Object->SetTimeStep(0.9 * stable);
+  springs.Filter->SetTimeStep(0.9 * stable);
   EXPECT_EQ(springs.TryUpdate(), "");
-  EXPECT_LE(springs.Object->GetTimeStepInUse(), 0.9 * stable);
+  EXPECT_LE(springs.Filter->GetTimeStepInUse(), 0.9 * stable);
   // A handle that moves very far in one frame.
-  springs.Object->SetHandlesData(
+  springs.Filter->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.0, 0.0, 0.03), glm::dvec3(1e30, 0.0, 0.0) } }));
   EXPECT_TRUE(HasPart(springs.TryUpdate(), "diverged"));
   // A handle in other units.
-  springs.Object->SetHandlesData(
+  springs.Filter->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.0, 0.0, 30.0), glm::dvec3(0.0, 0.0, 31.0) } }));
   EXPECT_TRUE(HasPart(springs.TryUpdate(), "farther from the body than the body is long"));
-  springs.Object->SetHandleRadius(std::numeric_limits<double>::quiet_NaN());
+  springs.Filter->SetHandleRadius(std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(HasPart(springs.TryUpdate(), "HandleRadius is not a number"));
-  springs.Object->SetHandleRadius(0.0);
-  springs.Object->SetHandlesData(nullptr);
+  springs.Filter->SetHandleRadius(0.0);
+  springs.Filter->SetHandlesData(nullptr);
   EXPECT_EQ(springs.TryUpdate(), "");
   EXPECT_EQ(springs.Copy()->GetRange(-1)[1], 0.0);
 
@@ -182,8 +182,8 @@ TEST(ElasticDeformation, ErrorsOfSubclasses)
 template <typename Filter>
 std::string UpdateAndWarn(Simulated<Filter>& simulated)
 {
-  simulated.Object->Modified();
-  simulated.Object->Update();
+  simulated.Filter->Modified();
+  simulated.Filter->Update();
   EXPECT_FALSE(simulated.Observer->GetError());
   const std::string warning = simulated.Observer->GetWarningMessage();
   simulated.Observer->Clear();
@@ -213,12 +213,12 @@ void CheckWarnings(double push)
   bar->GetPoints()->InsertNextPoint(top.x, top.y, top.z + 1e-4);
   bar->GetPointData()->GetArray("Fixed")->InsertNextTuple1(0.0);
   Simulated<Filter> simulated(bar);
-  simulated.Object->SetHandlesData(
+  simulated.Filter->SetHandlesData(
     MakeHandles({ { top + glm::dvec3(0.0, 0.0, 1e-4), top - glm::dvec3(0.0, 0.0, push) } }));
   const std::string warning = UpdateAndWarn(simulated);
   EXPECT_TRUE(HasPart(warning, "inside out"));
-  EXPECT_GT(simulated.Object->GetNumberOfInvertedTetrahedra(), 0);
-  EXPECT_TRUE(HasPart(simulated.Object->GetSummary(), "inside out"));
+  EXPECT_GT(simulated.Filter->GetNumberOfInvertedTetrahedra(), 0);
+  EXPECT_TRUE(HasPart(simulated.Filter->GetSummary(), "inside out"));
   EXPECT_LT(std::abs(simulated.Copy()->GetComponent(node, 2) + push + 1e-4), 1e-6);
   EXPECT_EQ(simulated.Copy()->GetComponent(bar->GetNumberOfPoints() - 1, 2), 0.0);
 }
@@ -227,22 +227,22 @@ TEST(ElasticDeformation, WarningsOfSubclasses)
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<vtkMassSpringDeformation> springs(bar);
-  springs.Object->SetPoissonRatio(0.2);
+  springs.Filter->SetPoissonRatio(0.2);
   EXPECT_TRUE(HasPart(UpdateAndWarn(springs), "Poisson ratio of the body is less than 0.25"));
-  springs.Object->SetPoissonRatio(0.25);
+  springs.Filter->SetPoissonRatio(0.25);
   EXPECT_EQ(UpdateAndWarn(springs), std::string());
 
   // By default one execution ends in equilibrium.
   Simulated<vtkFiniteElementDeformation> elements(bar);
-  elements.Object->SetGravity(0.0, -60.0, 0.0);
+  elements.Filter->SetGravity(0.0, -60.0, 0.0);
   EXPECT_EQ(elements.TryUpdate(), "");
-  EXPECT_TRUE(elements.Object->GetIsConverged());
-  EXPECT_LE(elements.Object->GetRelativeResidual(), 1e-6);
+  EXPECT_TRUE(elements.Filter->GetIsConverged());
+  EXPECT_LE(elements.Filter->GetRelativeResidual(), 1e-6);
   Simulated<vtkFiniteElementDeformation> live(bar);
-  live.Object->SetModeToInteractive();
-  live.Object->SetGravity(0.0, -60.0, 0.0);
+  live.Filter->SetModeToInteractive();
+  live.Filter->SetGravity(0.0, -60.0, 0.0);
   EXPECT_TRUE(HasPart(UpdateAndWarn(live), "not in equilibrium after 2 steps"));
-  live.Object->Reset();
+  live.Filter->Reset();
   EXPECT_FALSE(HasPart(UpdateAndWarn(live), "not in equilibrium"));
 }
 
@@ -254,9 +254,9 @@ void CheckHangingBar(const Settle& settle)
   {
     const double unit = isMillimetre ? 1e-3 : 1.0;
     Simulated<Filter> simulated(MakeBar(unit));
-    simulated.Object->SetLengthUnit(isMillimetre ? Filter::MILLIMETRE : Filter::METRE);
-    simulated.Object->SetGravity(0.0, 0.0, 2.0);
-    simulated.Object->ElementResultsOn();
+    simulated.Filter->SetLengthUnit(isMillimetre ? Filter::MILLIMETRE : Filter::METRE);
+    simulated.Filter->SetGravity(0.0, 0.0, 2.0);
+    simulated.Filter->ElementResultsOn();
     settle(simulated);
     const double expected = 1000.0 * 2.0 * 0.03 * 0.03 / (2.0 * 1e4) / unit;
     constexpr double cube = 0.0025 * 0.0025 * 0.0025;
@@ -264,7 +264,7 @@ void CheckHangingBar(const Settle& settle)
     const double found = moved->GetComponent(12 * 25 + 12, 2);
     // The elongation is smaller, since the fixed end cannot become narrower.
     EXPECT_TRUE(found > 0.94 * expected && found < expected);
-    vtkCellData* cells = simulated.Object->GetOutput()->GetCellData();
+    vtkCellData* cells = simulated.Filter->GetOutput()->GetCellData();
     // The mean stress in the cells at the fixed end is the weight divided by the area.
     double stress = 0.0;
     constexpr int lowest = 4 * 4 * 5;
@@ -279,12 +279,12 @@ void CheckHangingBar(const Settle& settle)
     // The strain energy of all tetrahedra is half of the work of the weight.
     double energy = 0.0;
     double work = 0.0;
-    for (vtkIdType cell = 0; cell < simulated.Object->GetOutput()->GetNumberOfCells(); ++cell)
+    for (vtkIdType cell = 0; cell < simulated.Filter->GetOutput()->GetNumberOfCells(); ++cell)
     {
       const double volume = cube * (cell % 5 == 4 ? 1.0 / 3.0 : 1.0 / 6.0);
       energy += volume * cells->GetArray("StrainEnergyDensity")->GetComponent(cell, 0);
       vtkNew<vtkIdList> nodes;
-      simulated.Object->GetOutput()->GetCellPoints(cell, nodes);
+      simulated.Filter->GetOutput()->GetCellPoints(cell, nodes);
       for (vtkIdType i = 0; i < nodes->GetNumberOfIds(); ++i)
       {
         // The part of the weight of a tetrahedron that acts on this node.
@@ -300,22 +300,22 @@ void CheckHangingBar(const Settle& settle)
 TEST(ElasticDeformation, Times)
 {
   Simulated<vtkMassSpringDeformation> simulated(MakeBar(1.0));
-  simulated.Object->SetGravity(3.0, 0.0, 0.0);
+  simulated.Filter->SetGravity(3.0, 0.0, 0.0);
   // VTK would ignore the next time.
   simulated.At(0.0);
   EXPECT_TRUE(HasPart(simulated.Observer->GetWarningMessage(), "EndTime"));
   simulated.Observer->Clear();
-  simulated.Object->SetEndTime(1.0);
-  simulated.Object->UpdateInformation();
+  simulated.Filter->SetEndTime(1.0);
+  simulated.Filter->UpdateInformation();
   const double* range =
-    simulated.Object->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
+    simulated.Filter->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::TIME_RANGE());
   EXPECT_TRUE(range && range[0] == 0.0 && range[1] == 1.0);
   const auto start = simulated.At(0.0);
   EXPECT_EQ(start->GetRange(-1)[1], 0.0);
   const auto half = simulated.At(0.05);
-  EXPECT_EQ(simulated.Object->GetTime(), 0.05);
+  EXPECT_EQ(simulated.Filter->GetTime(), 0.05);
   EXPECT_EQ(
-    simulated.Object->GetOutput()->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), 0.05);
+    simulated.Filter->GetOutput()->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()), 0.05);
   const auto whole = simulated.At(0.1);
   EXPECT_FALSE(AreEqual(half, whole));
   // Earlier times, and the same times again, give the same results to the last bit.
@@ -324,20 +324,20 @@ TEST(ElasticDeformation, Times)
   EXPECT_EQ(simulated.At(0.0)->GetRange(-1)[1], 0.0);
   // An update over several frames gives the same result as several updates.
   EXPECT_TRUE(AreEqual(simulated.At(0.1), whole));
-  simulated.Object->Reset();
-  EXPECT_EQ(simulated.Object->GetTime(), 0.0);
+  simulated.Filter->Reset();
+  EXPECT_EQ(simulated.Filter->GetTime(), 0.0);
   EXPECT_TRUE(AreEqual(simulated.At(0.05), half));
 
   // Without a requested time an update advances by one frame.
   Simulated<vtkMassSpringDeformation> free(MakeBar(1.0));
-  free.Object->SetGravity(3.0, 0.0, 0.0);
-  free.Object->SetFrameTime(0.05);
+  free.Filter->SetGravity(3.0, 0.0, 0.0);
+  free.Filter->SetFrameTime(0.05);
   EXPECT_EQ(free.TryUpdate(), "");
-  EXPECT_EQ(free.Object->GetTime(), 0.05);
-  free.Object->Update();
-  EXPECT_EQ(free.Object->GetTime(), 0.05); // nothing has changed
+  EXPECT_EQ(free.Filter->GetTime(), 0.05);
+  free.Filter->Update();
+  EXPECT_EQ(free.Filter->GetTime(), 0.05); // nothing has changed
   EXPECT_EQ(free.TryUpdate(), "");
-  EXPECT_EQ(free.Object->GetTime(), 0.1);
+  EXPECT_EQ(free.Filter->GetTime(), 0.1);
 }
 
 // A simulation continues with other materials, and starts again with another mesh.
@@ -346,38 +346,30 @@ void CheckContinuedSimulation()
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<Filter> simulated(bar);
-  simulated.Object->SetGravity(0.0, 0.0, 2.0);
+  simulated.Filter->SetGravity(0.0, 0.0, 2.0);
   EXPECT_EQ(simulated.TryUpdate(), "");
-  vtkDataArray* array = simulated.Object->GetOutput()->GetPointData()->GetVectors();
+  vtkDataArray* array = simulated.Filter->GetOutput()->GetPointData()->GetVectors();
   EXPECT_EQ(std::string(array->GetName()), std::string("Displacement"));
   // Points and arrays are shared if no points are appended.
   EXPECT_TRUE(
-    HasMidSides<Filter> || simulated.Object->GetOutput()->GetPoints() == bar->GetPoints());
+    HasMidSides<Filter> || simulated.Filter->GetOutput()->GetPoints() == bar->GetPoints());
   EXPECT_TRUE(HasMidSides<Filter> ||
-    simulated.Object->GetOutput()->GetPointData()->GetArray("Fixed") ==
+    simulated.Filter->GetOutput()->GetPointData()->GetArray("Fixed") ==
       bar->GetPointData()->GetArray("Fixed"));
   const double before = simulated.Copy()->GetRange(-1)[1];
   EXPECT_GT(before, 0.0);
-  simulated.Object->SetGravity(0.0, 0.0, 0.0);
-  simulated.Object->SetYoungModulus(2e4);
+  simulated.Filter->SetGravity(0.0, 0.0, 0.0);
+  simulated.Filter->SetYoungModulus(2e4);
   EXPECT_EQ(simulated.TryUpdate(), "");
-  EXPECT_EQ(simulated.Object->GetOutput()->GetPointData()->GetVectors(), array);
+  EXPECT_EQ(simulated.Filter->GetOutput()->GetPointData()->GetVectors(), array);
   // An equal mesh does not start the simulation again.
   vtkNew<vtkUnstructuredGrid> equal;
   equal->DeepCopy(bar);
-  simulated.Object->SetInputData(equal);
+  simulated.Filter->SetInputData(equal);
   EXPECT_EQ(simulated.TryUpdate(), "");
   vtkSmartPointer<vtkUnstructuredGrid> other = MakeBar(0.5);
-  simulated.Object->SetInputData(other);
-  const std::string warning = [&]
-  {
-    simulated.Object->Modified();
-    simulated.Object->Update();
-    const std::string words = simulated.Observer->GetWarningMessage();
-    simulated.Observer->Clear();
-    return words;
-  }();
-  EXPECT_TRUE(HasPart(warning, "starts again from rest"));
+  simulated.Filter->SetInputData(other);
+  EXPECT_TRUE(HasPart(UpdateAndWarn(simulated), "starts again from rest"));
   EXPECT_EQ(simulated.Copy()->GetRange(-1)[1], 0.0);
   // Cells that are written in place are another mesh, too.
   EXPECT_EQ(simulated.TryUpdate(), "");
@@ -392,17 +384,17 @@ void CheckContinuedSimulation()
   other->GetCells()->GetConnectivityArray()->SetComponent(0, 0, static_cast<double>(copy));
   other->GetCells()->GetConnectivityArray()->Modified();
   other->Modified();
-  simulated.Object->Update();
+  simulated.Filter->Update();
   EXPECT_TRUE(
     HasPart(std::string(simulated.Observer->GetWarningMessage()), "starts again from rest"));
   simulated.Observer->Clear();
-  EXPECT_EQ(simulated.Object->GetOutput()->GetNumberOfPoints(),
-    simulated.Object->GetOutput()->GetPointData()->GetVectors()->GetNumberOfTuples());
-  simulated.Object->SetInputData(bar);
-  simulated.Object->Update();
+  EXPECT_EQ(simulated.Filter->GetOutput()->GetNumberOfPoints(),
+    simulated.Filter->GetOutput()->GetPointData()->GetVectors()->GetNumberOfTuples());
+  simulated.Filter->SetInputData(bar);
+  simulated.Filter->Update();
   simulated.Observer->Clear();
   EXPECT_TRUE(
-    HasPart(simulated.Object->GetSummary(), "Nodes: " + std::to_string(NodesOfBar<Filter>) + "\n"));
+    HasPart(simulated.Filter->GetSummary(), "Nodes: " + std::to_string(NodesOfBar<Filter>) + "\n"));
 }
 
 // Updates the filter and aborts at a progress event. event: the number of this event. Returns the
@@ -423,16 +415,16 @@ std::string Abort(Simulated<Filter>& simulated, int event)
   vtkNew<vtkCallbackCommand> abort;
   abort->SetCallback(AbortAt::Execute);
   abort->SetClientData(&event);
-  const unsigned long tag = simulated.Object->AddObserver(vtkCommand::ProgressEvent, abort);
-  simulated.Object->Modified();
-  simulated.Object->Update();
+  const unsigned long tag = simulated.Filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  simulated.Filter->Modified();
+  simulated.Filter->Update();
   EXPECT_LE(event, 0);
-  EXPECT_EQ(simulated.Object->GetOutput()->GetNumberOfPoints(), 0);
+  EXPECT_EQ(simulated.Filter->GetOutput()->GetNumberOfPoints(), 0);
   EXPECT_EQ(simulated.Observer->GetErrorMessage(), "");
-  simulated.Object->RemoveObserver(tag);
-  simulated.Object->SetAbortExecute(0);
+  simulated.Filter->RemoveObserver(tag);
+  simulated.Filter->SetAbortExecute(0);
   simulated.Observer->Clear();
-  simulated.Object->Update();
+  simulated.Filter->Update();
   EXPECT_EQ(simulated.Observer->GetErrorMessage(), "");
   const std::string warning = simulated.Observer->GetWarningMessage();
   simulated.Observer->Clear();
@@ -448,9 +440,9 @@ void CheckAborted()
   Simulated<Filter> wanted(bar);
   for (Simulated<Filter>* one : { &simulated, &wanted })
   {
-    one->Object->SetGravity(0.0, 0.0, 2.0);
+    one->Filter->SetGravity(0.0, 0.0, 2.0);
     EXPECT_EQ(one->TryUpdate(), "");
-    one->Object->SetYoungModulus(2e4);
+    one->Filter->SetYoungModulus(2e4);
   }
   EXPECT_EQ(Abort(simulated, 1), std::string());
   EXPECT_EQ(wanted.TryUpdate(), "");
@@ -478,12 +470,12 @@ TEST(ElasticDeformation, MisuseOfPresets)
 
   // Values that a preset replaces are not checked, and are used again with CUSTOM.
   Simulated<vtkFiniteElementDeformation> simulated(MakeBar(1.0));
-  simulated.Object->SetDensity(-1.0);
+  simulated.Filter->SetDensity(-1.0);
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "density"));
-  simulated.Object->SetMaterialPresetToLiver();
+  simulated.Filter->SetMaterialPresetToLiver();
   EXPECT_EQ(simulated.TryUpdate(), "");
-  EXPECT_EQ(simulated.Object->GetDensity(), -1.0);
-  simulated.Object->SetMaterialPresetToCustom();
+  EXPECT_EQ(simulated.Filter->GetDensity(), -1.0);
+  simulated.Filter->SetMaterialPresetToCustom();
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "density"));
 }
 
@@ -496,11 +488,11 @@ void CheckMaterialPresets()
   const auto simulate = [&](const auto& change)
   {
     Simulated<Filter> simulated(bar);
-    simulated.Object->SetGravity(1.0, 0.0, 2.0);
-    simulated.Object->SetFrameTime(1e-3);
-    simulated.Object->SetEndTime(1.0);
-    change(simulated.Object.Get());
-    simulated.Object->UpdateTimeStep(2e-3);
+    simulated.Filter->SetGravity(1.0, 0.0, 2.0);
+    simulated.Filter->SetFrameTime(1e-3);
+    simulated.Filter->SetEndTime(1.0);
+    change(simulated.Filter.Get());
+    simulated.Filter->UpdateTimeStep(2e-3);
     EXPECT_FALSE(simulated.Observer->GetError());
     EXPECT_FALSE(simulated.Observer->GetWarning());
     return simulated.Copy();
@@ -553,12 +545,12 @@ TEST(ElasticDeformation, DeformedVolume)
     filter->SetHandlesData(handles);
     filter->SetHandleRadius(6.0);
   };
-  prepare(elements.Object);
-  prepare(springs.Object);
-  elements.Object->SetModeToConverged();
-  springs.Object->SetDamping(30.0);
+  prepare(elements.Filter);
+  prepare(springs.Filter);
+  elements.Filter->SetModeToConverged();
+  springs.Filter->SetDamping(30.0);
   EXPECT_EQ(elements.TryUpdate(), "");
-  EXPECT_TRUE(elements.Object->GetIsConverged());
+  EXPECT_TRUE(elements.Filter->GetIsConverged());
   const auto settled = springs.At(2.0);
   const auto equilibrium = elements.Copy();
   double largest = 0.0;
@@ -576,7 +568,7 @@ TEST(ElasticDeformation, DeformedVolume)
   volume->GetPointData()->GetScalars()->Fill(100.0);
   vtkNew<vtkDeformVolumeFilter> deform;
   deform->SetInputData(volume);
-  deform->SetDeformationConnection(elements.Object->GetOutputPort());
+  deform->SetDeformationConnection(elements.Filter->GetOutputPort());
   deform->Update();
   EXPECT_EQ(deform->GetOutput()->GetDimensions()[2], 33);
 }
@@ -588,11 +580,11 @@ void CheckHeldNodes()
 {
   const auto bar = MakeBar(0.001); // 10 x 10 x 30 mm in cells of 2.5 mm
   Simulated<Filter> simulated(bar);
-  simulated.Object->SetLengthUnitToMillimetre();
-  simulated.Object->SetHandleRadius(3.0);
+  simulated.Filter->SetLengthUnitToMillimetre();
+  simulated.Filter->SetHandleRadius(3.0);
   const std::vector<Handle> handles = { { { 5.0, 5.0, 30.0 }, { 5.5, 5.0, 30.0 } },
     { { 5.0, 5.0, 25.0 }, { 5.0, 5.5, 25.0 } } };
-  simulated.Object->SetHandlesData(MakeHandles(handles));
+  simulated.Filter->SetHandlesData(MakeHandles(handles));
   EXPECT_EQ(simulated.TryUpdate(), "");
   const auto moved = simulated.Copy();
   int held[2] = { 0, 0 };
@@ -623,8 +615,8 @@ void CheckHiddenCells()
   const auto simulate = [](vtkUnstructuredGrid* mesh)
   {
     Simulated<Filter> simulated(mesh);
-    simulated.Object->SetLengthUnitToMillimetre();
-    simulated.Object->SetGravity(0.0, 0.0, 9.81);
+    simulated.Filter->SetLengthUnitToMillimetre();
+    simulated.Filter->SetGravity(0.0, 0.0, 9.81);
     EXPECT_EQ(simulated.TryUpdate(), std::string());
     const auto moved = simulated.Copy();
     const float* values = moved->GetPointer(0);
@@ -707,17 +699,17 @@ TEST(ElasticDeformation, HandlesOfNodes)
 {
   const auto bar = MakeBar(0.001);
   Simulated<vtkFiniteElementDeformation> simulated(bar);
-  simulated.Object->SetLengthUnitToMillimetre();
-  simulated.Object->SetHandleRadius(3.0);
+  simulated.Filter->SetLengthUnitToMillimetre();
+  simulated.Filter->SetHandleRadius(3.0);
   const vtkIdType corner = bar->GetNumberOfPoints() - 1;
   const auto handles = MakeHandles({ { { 5.0, 5.0, 30.0 }, { 5.5, 5.0, 30.0 } } });
   vtkNew<vtkIntArray> nodes;
   nodes->SetName("HeldNode");
   nodes->InsertNextValue(static_cast<int>(corner));
   handles->GetPointData()->AddArray(nodes);
-  simulated.Object->SetHandlesData(handles);
+  simulated.Filter->SetHandlesData(handles);
   EXPECT_EQ(simulated.TryUpdate(), "");
-  EXPECT_EQ(simulated.Object->GetNumberOfHeldNodes(), 1);
+  EXPECT_EQ(simulated.Filter->GetNumberOfHeldNodes(), 1);
   double moved[3];
   simulated.Copy()->GetTuple(corner, moved);
   EXPECT_NEAR(moved[0], 0.5, 1e-6);
@@ -728,7 +720,7 @@ TEST(ElasticDeformation, HandlesOfNodes)
   }
   nodes->SetValue(0, -1);
   EXPECT_EQ(simulated.TryUpdate(), "");
-  EXPECT_GT(simulated.Object->GetNumberOfHeldNodes(), 1);
+  EXPECT_GT(simulated.Filter->GetNumberOfHeldNodes(), 1);
 }
 
 // A handle with no node within its radius holds the nodes of the tetrahedron that contains it:
@@ -736,12 +728,12 @@ TEST(ElasticDeformation, HandlesOfNodes)
 TEST(ElasticDeformation, HandlesBetweenNodes)
 {
   Simulated<vtkFiniteElementDeformation> simulated(MakeBar(0.001));
-  simulated.Object->SetLengthUnitToMillimetre();
-  simulated.Object->SetHandleRadius(0.1);
-  simulated.Object->SetHandlesData(MakeHandles({ { { 4.1, 4.3, 21.0 }, { 4.6, 4.3, 21.0 } } }));
+  simulated.Filter->SetLengthUnitToMillimetre();
+  simulated.Filter->SetHandleRadius(0.1);
+  simulated.Filter->SetHandlesData(MakeHandles({ { { 4.1, 4.3, 21.0 }, { 4.6, 4.3, 21.0 } } }));
   EXPECT_EQ(simulated.TryUpdate(), "");
-  EXPECT_EQ(simulated.Object->GetNumberOfHeldNodes(), 10);
-  simulated.Object->SetHandlesData(MakeHandles({ { { 4.1, 4.3, 31.0 }, { 4.6, 4.3, 31.0 } } }));
+  EXPECT_EQ(simulated.Filter->GetNumberOfHeldNodes(), 10);
+  simulated.Filter->SetHandlesData(MakeHandles({ { { 4.1, 4.3, 31.0 }, { 4.6, 4.3, 31.0 } } }));
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "no tetrahedron contains this position"));
 }
 
@@ -756,14 +748,14 @@ TEST(ElasticDeformation, HangingBar)
   CheckHangingBar<vtkMassSpringDeformation>(
     [](Simulated<vtkMassSpringDeformation>& simulated)
     {
-      simulated.Object->SetDamping(30.0);
-      simulated.Object->SetPoissonRatio(0.4);
+      simulated.Filter->SetDamping(30.0);
+      simulated.Filter->SetPoissonRatio(0.4);
       simulated.At(2.0);
     });
   CheckHangingBar<vtkFiniteElementDeformation>(
     [](Simulated<vtkFiniteElementDeformation>& simulated)
     {
-      simulated.Object->SetModeToConverged();
-      simulated.Object->Update();
+      simulated.Filter->SetModeToConverged();
+      simulated.Filter->Update();
     });
 }

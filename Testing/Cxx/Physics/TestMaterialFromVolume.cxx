@@ -73,46 +73,18 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(vtkImageData* volume, int nodes)
   return mesh;
 }
 
-struct Tested
+struct Tested : Observed<vtkMaterialFromVolume>
 {
   explicit Tested(vtkDataObject* mesh, vtkDataObject* volume)
   {
-    for (const unsigned long event : { vtkCommand::ErrorEvent, vtkCommand::WarningEvent })
-    {
-      this->Filter->AddObserver(event, this->Observer);
-      this->Filter->GetExecutive()->AddObserver(event, this->ExecutiveObserver);
-    }
     this->Filter->SetInputDataObject(mesh);
     this->Filter->SetVolumeData(volume);
     this->Filter->SetMaterialArrayName("labels");
-  }
-  // Updates the filter and returns its error message, or "" without an error.
-  std::string TryUpdate()
-  {
-    this->Filter->Modified();
-    this->Filter->Update();
-    const std::string errors = this->Observer->GetErrorMessage();
-    EXPECT_EQ(errors.find("ERROR: "), errors.rfind("ERROR: "));
-    if (!errors.empty())
-    {
-      // The next update reports the error again, although nothing has changed.
-      this->Observer->Clear();
-      EXPECT_FALSE(this->Filter->GetExecutive()->Update());
-      EXPECT_TRUE(this->Observer->GetError());
-    }
-    EXPECT_TRUE(errors.empty() || this->Filter->GetOutput()->GetNumberOfPoints() == 0);
-    this->Observer->Clear();
-    this->ExecutiveObserver->Clear();
-    return errors;
   }
   double Get(int name, vtkIdType cell)
   {
     return this->Filter->GetOutput()->GetCellData()->GetArray(Names[name])->GetComponent(cell, 0);
   }
-
-  vtkNew<vtkMaterialFromVolume> Filter;
-  vtkNew<vtkTest::ErrorObserver> Observer;
-  vtkNew<vtkTest::ErrorObserver> ExecutiveObserver;
 };
 
 TEST(MaterialFromVolume, Misuse)

@@ -232,9 +232,9 @@ TEST(TenNodeElements, Output)
   cube->GetCellData()->AddArray(ofCells);
 
   Elements elements(cube);
-  elements.Object->ElementResultsOn();
+  elements.Filter->ElementResultsOn();
   EXPECT_EQ(elements.TryUpdate(), "");
-  vtkUnstructuredGrid* output = elements.Object->GetOutput();
+  vtkUnstructuredGrid* output = elements.Filter->GetOutput();
   EXPECT_EQ(output->GetNumberOfPoints(), vtkIdType{ NodesOfCube + 1 });
   EXPECT_EQ(output->GetNumberOfCells(), cube->GetNumberOfCells());
   EXPECT_EQ(output->GetCellType(40), static_cast<int>(VTK_TRIANGLE));
@@ -281,11 +281,11 @@ TEST(TenNodeElements, Output)
   // Points and cells of the output are the same objects as long as the mesh does not change.
   vtkPoints* points = output->GetPoints();
   vtkCellArray* cells = output->GetCells();
-  elements.Object->SetGravity(0.0, 0.0, 1.0);
+  elements.Filter->SetGravity(0.0, 0.0, 1.0);
   EXPECT_EQ(elements.TryUpdate(), "");
   vtkDataArray* madeHeights = output->GetPointData()->GetArray("Height");
   EXPECT_TRUE(output->GetPoints() == points && output->GetCells() == cells);
-  elements.Object->SetGravity(0.0, 0.0, 2.0);
+  elements.Filter->SetGravity(0.0, 0.0, 2.0);
   EXPECT_EQ(elements.TryUpdate(), "");
   EXPECT_EQ(output->GetPointData()->GetArray("Height"), madeHeights);
   cube->GetPointData()->GetArray("Force")->Fill(2e-3);
@@ -300,10 +300,10 @@ TEST(TenNodeElements, Output)
   again->DeepCopy(output);
   again->GetPointData()->RemoveArray("Displacement");
   Elements second(again);
-  second.Object->SetGravity(0.0, 0.0, 2.0);
+  second.Filter->SetGravity(0.0, 0.0, 2.0);
   EXPECT_EQ(second.TryUpdate(), "");
-  EXPECT_EQ(second.Object->GetOutput()->GetPoints(), again->GetPoints());
-  EXPECT_EQ(second.Object->GetOutput()->GetCells(), again->GetCells());
+  EXPECT_EQ(second.Filter->GetOutput()->GetPoints(), again->GetPoints());
+  EXPECT_EQ(second.Filter->GetOutput()->GetCells(), again->GetCells());
 }
 
 // Linear and ten-node cells in one mesh: common edges have the mid-side node of the ten-node cell.
@@ -322,9 +322,9 @@ TEST(TenNodeElements, MixedCells)
   }
   FixPoints(mixed, [](const glm::dvec3& p) { return p.z == 0.0; });
   Elements elements(mixed);
-  elements.Object->SetGravity(0.0, 0.0, 2.0);
+  elements.Filter->SetGravity(0.0, 0.0, 2.0);
   EXPECT_EQ(elements.TryUpdate(), "");
-  vtkUnstructuredGrid* output = elements.Object->GetOutput();
+  vtkUnstructuredGrid* output = elements.Filter->GetOutput();
   std::set<std::vector<double>> positions;
   std::set<vtkIdType> used;
   for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
@@ -346,7 +346,7 @@ using Found = std::map<std::array<double, 3>, glm::dvec3>;
 Found FindDisplacements(Elements& elements)
 {
   Found found;
-  vtkUnstructuredGrid* output = elements.Object->GetOutput();
+  vtkUnstructuredGrid* output = elements.Filter->GetOutput();
   vtkDataArray* vectors = output->GetPointData()->GetVectors();
   for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
   {
@@ -404,7 +404,7 @@ TEST(TenNodeElements, Prescribed)
       scaled->GetPoints()->SetPoint(i, &position.x);
     }
     Elements elements(scaled);
-    elements.Object->SetLengthUnitToMillimetre();
+    elements.Filter->SetLengthUnitToMillimetre();
     EXPECT_EQ(elements.TryUpdate(), "");
     const double worst = GetWorst(elements, [&](const glm::dvec3& p) { return first * p; });
     std::cout << "affine map: largest error " << worst << " of 30 mm\n";
@@ -412,8 +412,8 @@ TEST(TenNodeElements, Prescribed)
     EXPECT_LT(worst, 1e-5);
     prescribe(second);
     scaled->GetPointData()->AddArray(cube->GetPointData()->GetArray("PrescribedDisplacement"));
-    elements.Object->Modified();
-    elements.Object->Update();
+    elements.Filter->Modified();
+    elements.Filter->Update();
     EXPECT_EQ(elements.Observer->GetWarningMessage(), "");
     EXPECT_LT(GetWorst(elements, [&](const glm::dvec3& p) { return second * p; }), 1e-5);
     scaled->GetPointData()->RemoveArray("PrescribedDisplacement");
@@ -440,7 +440,7 @@ TEST(TenNodeElements, IntegerNormals)
   cube->GetPointData()->AddArray(normals);
   Elements elements(cube);
   EXPECT_EQ(elements.TryUpdate(), "");
-  vtkUnstructuredGrid* output = elements.Object->GetOutput();
+  vtkUnstructuredGrid* output = elements.Filter->GetOutput();
   vtkDataArray* made = output->GetPointData()->GetArray("SlidingNormal");
   int sliding = 0;
   for (vtkIdType i = CornersOfCube; i < output->GetNumberOfPoints(); ++i)
@@ -464,7 +464,7 @@ TEST(TenNodeElements, SecondNormals)
   AddPointVectors(cube, "SecondSlidingNormal",
     [&](const glm::dvec3& p) { return glm::dvec3(0.0, slides(p), 0.0); });
   Elements elements(cube);
-  elements.Object->SetGravity(1.0, 1.0, 1.0);
+  elements.Filter->SetGravity(1.0, 1.0, 1.0);
   EXPECT_EQ(elements.TryUpdate(), "");
   const Found found = FindDisplacements(elements);
   for (const double z : { 0.0, 0.25 * Edge, 0.5 * Edge })
@@ -484,21 +484,21 @@ TEST(TenNodeElements, FiltersBehind)
   AddScalars<short>(volume, "value", [](const glm::dvec3& p) { return 1e5 * p.x; });
   vtkNew<vtkDeformVolumeFilter> deform;
   deform->SetInputData(volume);
-  deform->SetDeformationConnection(elements.Object->GetOutputPort());
+  deform->SetDeformationConnection(elements.Filter->GetOutputPort());
   for (int step = 1; step <= 3; ++step)
   {
-    elements.Object->SetGravity(0.0, -1.0 * step, 0.0);
+    elements.Filter->SetGravity(0.0, -1.0 * step, 0.0);
     deform->Update();
     EXPECT_EQ(GetReported(deform, "Static mappings made"), 1);
   }
-  EXPECT_EQ(elements.Object->GetOutput()->GetNumberOfPoints(), vtkIdType{ NodesOfCube });
+  EXPECT_EQ(elements.Filter->GetOutput()->GetNumberOfPoints(), vtkIdType{ NodesOfCube });
   vtkNew<vtkPolyData> nodes;
-  nodes->SetPoints(elements.Object->GetOutput()->GetPoints());
+  nodes->SetPoints(elements.Filter->GetOutput()->GetPoints());
   vtkNew<vtkDeformGeometryFilter> geometry;
   geometry->SetInputData(nodes);
-  geometry->SetDeformationConnection(elements.Object->GetOutputPort());
+  geometry->SetDeformationConnection(elements.Filter->GetOutputPort());
   geometry->Update();
-  vtkDataArray* vectors = elements.Object->GetOutput()->GetPointData()->GetVectors();
+  vtkDataArray* vectors = elements.Filter->GetOutput()->GetPointData()->GetVectors();
   double worst = 0.0;
   double largest = 0.0;
   for (vtkIdType i = 0; i < nodes->GetNumberOfPoints(); ++i)
@@ -547,12 +547,12 @@ TEST(TenNodeElements, Cut)
     Elements elements(bar);
     EXPECT_EQ(elements.TryUpdate(), "");
     vtkNew<vtkUnstructuredGrid> whole;
-    whole->DeepCopy(elements.Object->GetOutput());
-    EXPECT_TRUE(elements.Object->GetIsConverged());
-    elements.Object->SetSheetData(MakeSheet(0.0151));
+    whole->DeepCopy(elements.Filter->GetOutput());
+    EXPECT_TRUE(elements.Filter->GetIsConverged());
+    elements.Filter->SetSheetData(MakeSheet(0.0151));
     EXPECT_EQ(elements.TryUpdate(), "");
-    EXPECT_EQ(elements.Object->GetNumberOfFrozenPieces(), 0);
-    vtkUnstructuredGrid* cut = elements.Object->GetOutput();
+    EXPECT_EQ(elements.Filter->GetNumberOfFrozenPieces(), 0);
+    vtkUnstructuredGrid* cut = elements.Filter->GetOutput();
     // The cut splits 25 corners, and the mid-side nodes of 40 edges and 16 diagonals.
     EXPECT_EQ(cut->GetNumberOfPoints(), whole->GetNumberOfPoints() + 25 + 40 + 16);
     std::set<vtkIdType> sides[2];
@@ -592,9 +592,9 @@ TEST(TenNodeElements, Cut)
     std::cout << "the upper half moves up by " << least << " m\n";
     EXPECT_GT(least, 0.9e-3);
 
-    elements.Object->UndoCut();
+    elements.Filter->UndoCut();
     EXPECT_EQ(elements.TryUpdate(), "");
-    vtkUnstructuredGrid* joined = elements.Object->GetOutput();
+    vtkUnstructuredGrid* joined = elements.Filter->GetOutput();
     EXPECT_EQ(joined->GetNumberOfPoints(), whole->GetNumberOfPoints());
     different = 0;
     for (vtkIdType cell = 0; cell < joined->GetNumberOfCells(); ++cell)

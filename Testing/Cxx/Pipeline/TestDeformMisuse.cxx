@@ -38,15 +38,8 @@ protected:
   {
     SCOPED_TRACE(what);
     this->Subject.Filter->Modified();
-    for (int repeat = 0; repeat < 2; ++repeat) // nothing changes before the second update
-    {
-      EXPECT_FALSE(this->Subject.Filter->GetExecutive()->Update());
-      EXPECT_EQ(this->Subject.TakeErrors(), 1);
-      EXPECT_TRUE(HasPart(this->Subject.LastError, word));
-      vtkImageData* output = this->Subject.Filter->GetOutput();
-      EXPECT_EQ(output->GetNumberOfPoints(), 0);
-      EXPECT_EQ(output->GetPointData()->GetNumberOfArrays(), 0);
-    }
+    this->Subject.VerifyFailure(word);
+    EXPECT_EQ(this->Subject.Filter->GetOutput()->GetPointData()->GetNumberOfArrays(), 0);
     this->Restore();
     EXPECT_TRUE(AreEqual(this->Subject.Update(), this->Expected));
   }
