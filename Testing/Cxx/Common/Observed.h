@@ -6,6 +6,8 @@
 
 #include "vtkTestErrorObserver.h"
 
+#include <vtkAlgorithm.h>
+#include <vtkCallbackCommand.h>
 #include <vtkCommand.h>
 #include <vtkExecutive.h>
 #include <vtkNew.h>
@@ -65,6 +67,29 @@ struct Observed
       EXPECT_EQ(this->Filter->GetOutput()->GetNumberOfPoints(), 0);
       this->ClearMessages();
     }
+  }
+
+  /// Updates the filter, and aborts the update at its first progress event. There must be no error,
+  /// and the output must be empty.
+  void Abort()
+  {
+    bool isAborted = false;
+    vtkNew<vtkCallbackCommand> abort;
+    abort->SetClientData(&isAborted);
+    abort->SetCallback(
+      [](vtkObject* caller, unsigned long, void* done, void*)
+      {
+        *static_cast<bool*>(done) = true;
+        static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
+      });
+    const unsigned long tag = this->Filter->AddObserver(vtkCommand::ProgressEvent, abort);
+    this->Filter->Update();
+    EXPECT_TRUE(isAborted);
+    EXPECT_EQ(this->Filter->GetOutput()->GetNumberOfPoints(), 0);
+    EXPECT_EQ(this->Observer->GetErrorMessage(), "");
+    this->Filter->RemoveObserver(tag);
+    this->Filter->SetAbortExecute(0);
+    this->ClearMessages();
   }
 
   vtkNew<FilterT> Filter;
