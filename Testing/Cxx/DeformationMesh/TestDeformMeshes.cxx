@@ -41,13 +41,6 @@ glm::dvec3 Bend(const glm::dvec3& p)
   return p + glm::dvec3(0.4 * std::sin(0.5 * p.y), 0.3 * std::cos(0.4 * p.z), 1.0 + 0.03 * p.x);
 }
 
-void Expect(Deformed& deformed, const std::string& words)
-{
-  deformed.Filter->Update();
-  EXPECT_EQ(deformed.TakeErrors(), 1);
-  EXPECT_TRUE(HasPart(deformed.LastError, words));
-}
-
 // A copy of a mesh, with an additional first and last node that no cell uses.
 Grid AddUnusedNodes(vtkUnstructuredGrid* mesh, const glm::dvec3& point, const glm::dvec3& vector)
 {
@@ -190,14 +183,14 @@ TEST(DeformMeshes, UnusedNodesThatChange)
   more->GetCells()->ReplaceCellAtId(cell, after);
   more->GetCells()->Modified();
   more->Modified();
-  Expect(tested, "Point " + std::to_string(last) + " of the deformation mesh");
+  tested.VerifyFailure("Point " + std::to_string(last) + " of the deformation mesh");
   more->GetPoints()->SetPoint(last, more->GetPoint(before->GetId(0)));
   more->GetPoints()->Modified();
-  Expect(tested, "Displacement " + std::to_string(last) + " of the deformation mesh");
+  tested.VerifyFailure("Displacement " + std::to_string(last) + " of the deformation mesh");
   vectors->SetTuple(last, before->GetId(0), vectors);
   vectors->SetComponent(last, 0, 1e30);
   vectors->Modified();
-  Expect(tested, "more than 16,383 output voxels");
+  tested.VerifyFailure("more than 16,383 output voxels");
   vectors->SetTuple(last, before->GetId(0), vectors);
   vectors->Modified();
   Deformed fresh(volume, more);
@@ -253,12 +246,11 @@ TEST(DeformMeshes, Blocks)
       EXPECT_TRUE(AreEqual(output, found.Update()));
       // A block that contains solid cells needs displacements.
       blocks->SetBlock(1 - first, solids);
-      Expect(found,
-        "The block with flat index " + std::to_string(2 - first) +
-          " of the deformation mesh has no point array \"displacement\"");
+      found.VerifyFailure("The block with flat index " + std::to_string(2 - first) +
+        " of the deformation mesh has no point array \"displacement\"");
       blocks->GetMetaData(1 - first)->Set(vtkCompositeDataSet::NAME(), "liver");
       blocks->Modified();
-      Expect(found, "Block \"liver\" of the deformation mesh has no point array");
+      found.VerifyFailure("Block \"liver\" of the deformation mesh has no point array");
       blocks->SetBlock(1 - first, shells);
       EXPECT_TRUE(AreEqual(output, found.Update()));
     }
@@ -268,7 +260,7 @@ TEST(DeformMeshes, Blocks)
   collection->SetPartition(1, 0, solids);
   collection->GetMetaData(1)->Set(vtkCompositeDataSet::NAME(), "bone");
   Deformed named(volume, collection);
-  Expect(named, "Block \"bone\" of the deformation mesh");
+  named.VerifyFailure("Block \"bone\" of the deformation mesh");
   // The error has the index of the node in its block.
   solids->GetPointData()->ShallowCopy(mesh->GetPointData());
   const Grid spoilt = Grid::New();
@@ -276,7 +268,7 @@ TEST(DeformMeshes, Blocks)
   spoilt->GetPointData()->GetArray(name)->SetComponent(3, 1, nan);
   collection->SetPartition(1, 0, spoilt);
   collection->Modified();
-  Expect(named, "Displacement 3 of block \"bone\" of the deformation mesh");
+  named.VerifyFailure("Displacement 3 of block \"bone\" of the deformation mesh");
 }
 
 // The number of nodes of a grid on each axis. They are unevenly spaced.
@@ -557,7 +549,7 @@ TEST(DeformMeshes, MeetingBlocks)
   second->GetPoints()->SetPoint(used, nan, 0.0, 0.0);
   second->GetPoints()->Modified();
   blocks->Modified();
-  Expect(found, "is not finite");
+  found.VerifyFailure("is not finite");
   second->GetPoints()->SetPoint(used, point);
   second->GetPoints()->Modified();
   blocks->Modified();
@@ -585,19 +577,19 @@ TEST(DeformMeshes, Grids)
   const auto volume = MakeVolume();
   vtkNew<vtkStructuredGrid> empty;
   Deformed found(volume, empty);
-  Expect(found, "no points");
+  found.VerifyFailure("no points");
   vtkNew<vtkStructuredGrid> flat;
   flat->SetDimensions(nodes[0], nodes[1], 1);
   vtkNew<vtkPoints> points;
   points->SetNumberOfPoints(nodes[0] * nodes[1]);
   flat->SetPoints(points);
   found.Filter->SetDeformationData(flat);
-  Expect(found, "no tetrahedra, but 12 quad");
+  found.VerifyFailure("no tetrahedra, but 12 quad");
   // Image data in a composite dataset is not a mesh.
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, volume);
   found.Filter->SetDeformationData(blocks);
-  Expect(found, "holds no vtkUnstructuredGrid");
+  found.VerifyFailure("holds no vtkUnstructuredGrid");
 }
 
 // Displacements that are exact in floats.
@@ -680,16 +672,16 @@ TEST(DeformMeshes, DeformedPoints)
   EXPECT_EQ(gone[0], gone[1]);
   found.Filter->SetDeformationData(moved);
   found.Filter->SetRestData(mesh);
-  Expect(found, "PointsAreDeformed is on, but there is a rest configuration");
+  found.VerifyFailure("PointsAreDeformed is on, but there is a rest configuration");
   found.Filter->SetRestData(nullptr);
   found.Update();
   const auto field = MakeImage({ { -1, 10, -1, 10, -1, 10 } });
   SetDisplacements(field, Bend);
   found.Filter->SetDeformationData(field);
-  Expect(found, "PointsAreDeformed is on, but the deformation is a displacement field");
+  found.VerifyFailure("PointsAreDeformed is on, but the deformation is a displacement field");
   const Grid without = MakeMesh(volume);
   found.Filter->SetDeformationData(without);
-  Expect(found, "The deformation mesh has no active Vectors");
+  found.VerifyFailure("The deformation mesh has no active Vectors");
 }
 
 TEST(DeformMeshes, Units)
@@ -707,20 +699,20 @@ TEST(DeformMeshes, Units)
                             "0.0385, z from -0.0405 to -0.0325, and that of the volume x from 20 "
                             "to 29, y from 30 to 38, z from -40 to -33.";
   Deformed deformed(volume, more);
-  Expect(deformed, boxes);
+  deformed.VerifyFailure(boxes);
   deformed.Filter->SetOutsideModeToExtrapolate();
-  Expect(deformed, boxes);
+  deformed.VerifyFailure(boxes);
   deformed.Filter->SetOutsideModeToDiscard();
   deformed.Filter->SetOutputBoundsModeToVolumeBounds();
-  Expect(deformed, boxes);
+  deformed.VerifyFailure(boxes);
   deformed.Filter->SetResamplerToMeshRasterization();
-  Expect(deformed, boxes);
+  deformed.VerifyFailure(boxes);
   deformed.Filter->SetResamplerToExact();
   deformed.Filter->SetOutputBoundsModeToDeformedBounds();
   const auto field = MakeImage({ { 0, 4, 0, 4, 0, 4 } }, glm::dvec3(0.002), glm::dvec3(0.02));
   SetDisplacements(field, Shift(0.0, 0.0, 0.0));
   deformed.Filter->SetDeformationData(field);
-  Expect(deformed, "The box of the field is x from 0.02 to 0.028");
+  deformed.VerifyFailure("The box of the field is x from 0.02 to 0.028");
 }
 
 vtkSmartPointer<vtkDoubleArray> MakeConstant(const char* called, int components, vtkIdType count)

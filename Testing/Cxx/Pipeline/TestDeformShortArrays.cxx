@@ -45,10 +45,7 @@ struct Case
   void Fails(const char* what, const std::string& words)
   {
     SCOPED_TRACE(what);
-    this->Subject.Filter->Update();
-    EXPECT_EQ(this->Subject.TakeErrors(), 1);
-    EXPECT_TRUE(HasPart(this->Subject.LastError, words));
-    EXPECT_EQ(this->Subject.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    this->Subject.VerifyFailure(words);
     this->Volume = MakeVolume();
     this->Mesh = MakeOwnMesh(this->Volume);
     this->Subject.Filter->SetInputData(this->Volume);

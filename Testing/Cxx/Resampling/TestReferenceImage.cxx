@@ -473,10 +473,7 @@ TEST(ReferenceImage, Misuse)
   };
   const auto expectError = [&](const std::string& words)
   {
-    deformed.Filter->Update();
-    EXPECT_EQ(deformed.TakeErrors(), 1) << words;
-    EXPECT_TRUE(HasPart(deformed.LastError, words));
-    EXPECT_EQ(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    deformed.VerifyFailure(words);
     restore();
     EXPECT_TRUE(AreEqual(deformed.Update(), expected));
     EXPECT_EQ(deformed.TakeWarning(), "");
