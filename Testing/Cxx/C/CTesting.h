@@ -295,12 +295,11 @@ inline vtkSmartPointer<vtkImageData> MakeObliqueVolume()
   return volume;
 }
 
-/// Adds an array of the type of the first argument.
+/// Adds an array of the type of the second argument, which is not the active scalars.
 template <typename T>
 void AddValues(vtkImageData* volume, T, const char* name, const WorldFunction& function)
 {
   AddScalars<T>(volume, name, function);
-  // Otherwise the next array would replace this one.
   volume->GetPointData()->SetActiveAttribute(-1, vtkDataSetAttributes::SCALARS);
 }
 

@@ -35,25 +35,14 @@ inline vtkSmartPointer<vtkImageData> MakeVolume(
   const Extent& extent, const glm::dvec3& spacing = glm::dvec3(1.0))
 {
   auto volume = MakeImage(extent, spacing, glm::dvec3(3.0, -2.0, 1.0));
-  const auto add = [&](vtkImageData* one)
-  {
-    vtkDataArray* array = one->GetPointData()->GetScalars();
-    volume->GetPointData()->AddArray(array);
-  };
-  const auto one = MakeImage(extent, spacing, glm::dvec3(3.0, -2.0, 1.0));
-  AddScalars<double>(one, "double", [](const glm::dvec3& p) { return p.x + 0.1 * p.y * p.z; });
-  add(one);
+  AddScalars<double>(volume, "double", [](const glm::dvec3& p) { return p.x + 0.1 * p.y * p.z; });
   AddScalars<unsigned char>(
-    one, "byte", [](const glm::dvec3& p) { return 120.0 + 100.0 * std::sin(p.x + 0.3 * p.y); });
-  add(one);
-  AddScalars<long long>(one, "label",
+    volume, "byte", [](const glm::dvec3& p) { return 120.0 + 100.0 * std::sin(p.x + 0.3 * p.y); });
+  AddScalars<long long>(volume, "label",
     [](const glm::dvec3& p) { return std::floor(0.3 * p.x) + 1000.0 * std::floor(0.2 * p.z); });
-  add(one);
-  AddScalars<float>(one, "float",
+  AddScalars<float>(volume, "float",
     [](const glm::dvec3& p)
     { return 100.0 * std::sin(0.7 * p.x) + 90.0 * std::cos(0.9 * p.y) + 35.0 * p.z; });
-  add(one);
-  volume->GetPointData()->SetActiveScalars("float");
   return volume;
 }
 

@@ -72,7 +72,8 @@ void AddScalars(vtkImageData* image, const char* name, const WorldFunction& func
   {
     array->SetValue(id, static_cast<T>(function(GetPoint(image, id))));
   }
-  image->GetPointData()->SetScalars(array);
+  image->GetPointData()->AddArray(array);
+  image->GetPointData()->SetActiveScalars(name);
 }
 
 inline vtkSmartPointer<vtkImageData> MakeImage(const Extent& extent,

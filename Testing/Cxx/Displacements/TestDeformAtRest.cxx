@@ -21,7 +21,6 @@ vtkSmartPointer<vtkImageData> MakeCutVolume()
   volume->SetSpacing(0.7, 1.1, 2.3);
   volume->SetOrigin(100.0, -50.0, 7.0);
   SetObliqueDirection(volume);
-  volume->GetPointData()->SetActiveScalars(nullptr); // otherwise the array would be replaced
   AddScalars<float>(volume, "more", [](const glm::dvec3& p) { return 0.1 * p.x - p.y * p.z; });
   vtkNew<vtkUnsignedCharArray> active;
   active->SetName("ActiveTetrahedra");
@@ -79,7 +78,6 @@ TEST(DeformAtRest, Misuse)
   crossed->SetNumberOfTuples(cut->GetNumberOfCells());
   crossed->Fill(31);
   cut->GetCellData()->AddArray(crossed);
-  cut->GetPointData()->SetActiveScalars(nullptr);
   AddScalars<float>(cut, "CutDistance", [](const glm::dvec3& p) { return p.x - 4.5; });
   subject.Filter->SetInputData(cut);
   subject.Filter->SetResamplerToMeshRasterization();

@@ -92,7 +92,6 @@ vtkSmartPointer<vtkImageData> MakeTissue(
   AddScalars<float>(volume, "more",
     [](const glm::dvec3& p)
     { return std::sin(1.3 * p.x + p.y) * p.z + 5.0 * std::cos(p.x * p.y); });
-  volume->GetPointData()->SetActiveScalars(nullptr); // otherwise the array would be replaced
   AddScalars<short>(volume, "value",
     [](const glm::dvec3& p)
     { return 400.0 * std::sin(0.7 * p.x) + 300.0 * std::cos(0.9 * p.y + 0.2 * p.z); });
@@ -180,7 +179,6 @@ TEST(DeformKeep, MovedBox)
   const glm::dvec3 spacing(0.8, 1.25, 2.0);
   const auto volume = MakeImage({ { 0, 80, 0, 40, 0, 30 } }, spacing);
   AddScalars<double>(volume, "x", [](const glm::dvec3& p) { return p.x; });
-  volume->GetPointData()->SetActiveScalars(nullptr);
   AddScalars<float>(volume, "value",
     [](const glm::dvec3& p) { return std::sin(1.3 * p.x + p.y) * p.z + 7.0 * p.x; });
   const glm::dvec3 min(24.1, 16.3, 22.6);

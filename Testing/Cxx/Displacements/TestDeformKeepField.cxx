@@ -70,7 +70,6 @@ vtkSmartPointer<vtkImageData> MakeTissue(vtkImageData* image)
   for (int axis = 0; axis < 3; ++axis)
   {
     AddScalars<double>(image, names[axis], [axis](const glm::dvec3& p) { return p[axis]; });
-    image->GetPointData()->SetActiveScalars(nullptr); // otherwise the array would be replaced
   }
   AddScalars<short>(image, "value",
     [](const glm::dvec3& p)

@@ -35,21 +35,13 @@ const Extent VolumeExtent{ { 0, 40, 0, 30, 0, 25 } };
 constexpr int NumberOfArrays = 6; // including vtkValidPointMask
 constexpr int MostUnread = 5;     // without the ids, which are always copied to the host
 
-template <typename T>
-void AddArray(vtkImageData* image, const char* name, const WorldFunction& function)
-{
-  // Otherwise AddScalars() would replace the active scalars.
-  image->GetPointData()->SetActiveAttribute(-1, vtkDataSetAttributes::SCALARS);
-  AddScalars<T>(image, name, function);
-}
-
 // A volume with arrays of several types, with ids, and with an array of two components.
 vtkSmartPointer<vtkImageData> MakeArrays()
 {
   const auto volume = MakeVolume(VolumeExtent);
   vtkPointData* points = volume->GetPointData();
-  AddArray<double>(volume, "double", [](const glm::dvec3& p) { return p.x * 0.3 - p.y; });
-  AddArray<unsigned char>(volume, "byte", [](const glm::dvec3& p) { return p.z + p.x; });
+  AddScalars<double>(volume, "double", [](const glm::dvec3& p) { return p.x * 0.3 - p.y; });
+  AddScalars<unsigned char>(volume, "byte", [](const glm::dvec3& p) { return p.z + p.x; });
   // Consecutive ids are equal when they are rounded to doubles.
   vtkNew<vtkIdTypeArray> ids;
   ids->SetName("id");
@@ -319,7 +311,7 @@ TEST(OutputOnDevice, Interfaces)
 TEST(OutputOnDevice, RangesOfOtherShapes)
 {
   const auto volume = MakeVolume(VolumeExtent);
-  AddArray<unsigned char>(
+  AddScalars<unsigned char>(
     volume, "uint8", [](const glm::dvec3& p) { return 90.0 + 50.0 * std::sin(0.3 * p.x); });
   volume->GetPointData()->SetActiveScalars("value");
   Both both(volume);

@@ -338,9 +338,7 @@ TEST_F(DeformArrays, WrittenValues)
 {
   auto volume = MakeImage({ { 0, 7, 0, 7, 0, 7 } });
   AddScalars<int>(volume, "dose", [](const glm::dvec3&) { return 1.0; });
-  const vtkSmartPointer<vtkDataArray> dose = volume->GetPointData()->GetScalars();
   AddScalars<int>(volume, "value", [](const glm::dvec3&) { return 1.0; });
-  volume->GetPointData()->AddArray(dose);
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
   Deformed deformed(volume, mesh);

@@ -40,9 +40,7 @@ vtkSmartPointer<vtkImageData> MakeDose(const Extent& extent = { { 0, 39, 0, 37, 
     return square < 1.0 ? 20000.0 * (1.0 - square) * (1.0 - square) : 0.0;
   };
   AddScalars<short>(volume, "dose", blob);
-  volume->GetPointData()->SetActiveScalars(nullptr); // otherwise the array would be replaced
   AddScalars<double>(volume, "activity", blob);
-  volume->GetPointData()->SetActiveScalars(nullptr);
   AddScalars<float>(
     volume, "linear", [](const glm::dvec3& p) { return 0.3 * p.x - 0.7 * p.y + 1.1 * p.z; });
   return volume;
@@ -107,7 +105,6 @@ TEST(ExtraArrays, Misuse)
   filter->SetResamplerToAutomatic();
   for (const char* name : { "Jacobian", "RestPosition", "RestPosition y" })
   {
-    volume->GetPointData()->SetActiveScalars(nullptr); // otherwise the array would be replaced
     AddScalars<float>(volume, name, [](const glm::dvec3& p) { return p.x; });
     subject.VerifyFailure("has a point array \"" + std::string(name) + "\"");
     volume->GetPointData()->RemoveArray(name);
@@ -287,7 +284,6 @@ TEST(ExtraArrays, Kept)
 {
   const auto volume = MakeImage({ { 0, 49, 0, 39, 0, 35 } });
   AddScalars<float>(volume, "dose", [](const glm::dvec3&) { return 2.0; });
-  volume->GetPointData()->SetActiveScalars(nullptr);
   AddScalars<double>(volume, "activity", [](const glm::dvec3& p) { return 5.0 + 0.1 * p.x; });
   vtkNew<vtkLatticeTetrahedraSource> source;
   source->SetNumberOfNodes(4, 4, 4);
