@@ -20,6 +20,7 @@
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPointSet.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkTypeTraits.h>
@@ -150,6 +151,17 @@ inline void SetDisplacements(
 inline WorldMap Shift(double x, double y, double z)
 {
   return [=](const glm::dvec3& point) { return point + glm::dvec3(x, y, z); };
+}
+
+/// Moves each point of a mesh to its image by a map.
+inline void MovePoints(vtkPointSet* mesh, const WorldMap& map)
+{
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 point = map(GetPoint(mesh, id));
+    mesh->GetPoints()->SetPoint(id, &point.x);
+  }
+  mesh->GetPoints()->Modified();
 }
 
 /// A vtkDeformVolumeFilter under test.
@@ -292,6 +304,21 @@ inline void VerifyPart(vtkImageData* part, vtkImageData* whole)
         EXPECT_EQ(array->GetComponent(id, component), ofWhole->GetComponent(other, component));
       }
     }
+  }
+}
+
+/// Updates pieces of the output of a filter, and checks that they are equal to those of the whole
+/// output.
+inline void VerifyPieces(Deformed& deformed, int pieces, vtkImageData* whole)
+{
+  for (int piece = 0; piece < pieces; ++piece)
+  {
+    deformed.Filter->UpdatePiece(piece, pieces, 0);
+    EXPECT_EQ(deformed.TakeErrors(), 0);
+    vtkImageData* part = deformed.Filter->GetOutput();
+    EXPECT_TRUE(
+      part->GetNumberOfPoints() > 0 && part->GetNumberOfPoints() < whole->GetNumberOfPoints());
+    VerifyPart(part, whole);
   }
 }
 

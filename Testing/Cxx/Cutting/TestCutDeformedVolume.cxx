@@ -62,11 +62,7 @@ TEST(CutDeformedVolume, Deformed)
   SetDisplacements(field, Shift(move.x, move.y, move.z));
   auto deformedMesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
   deformedMesh->DeepCopy(restMesh);
-  for (vtkIdType i = 0; i < deformedMesh->GetNumberOfPoints(); ++i)
-  {
-    const glm::dvec3 point = GetPoint(restMesh, i) + move;
-    deformedMesh->GetPoints()->SetPoint(i, &point.x);
-  }
+  MovePoints(deformedMesh, Shift(move.x, move.y, move.z));
   for (int kind = 0; kind < 3; ++kind)
   {
     Edited<vtkCutVolume> cut;

@@ -519,13 +519,12 @@ TEST(DeformMeshes, MeetingBlocks)
 {
   const auto volume = MakeVolume({ { 0, 39, 0, 39, 0, 39 } });
   const auto curved = MakeStructuredGrid();
-  for (vtkIdType id = 0; id < curved->GetNumberOfPoints(); ++id)
-  {
-    glm::dvec3 point = GetPoint(curved, id);
-    point.z += 0.8 * std::sin(2.0 * point.x) * std::cos(1.5 * point.y);
-    point *= 4.0;
-    curved->GetPoints()->SetPoint(id, &point.x);
-  }
+  MovePoints(curved,
+    [](const glm::dvec3& p)
+    {
+      const double height = 0.8 * std::sin(2.0 * p.x) * std::cos(1.5 * p.y);
+      return 4.0 * (p + glm::dvec3(0.0, 0.0, height));
+    });
   const Grid whole = MakeHexahedra(curved, [](int) { return false; });
   SetDisplacements(whole, Shift(0.0, 0.5, 0.0));
   Deformed expected(volume, whole);
@@ -639,18 +638,10 @@ TEST(DeformMeshes, DeformedPoints)
   EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
   EXPECT_EQ(GetReported(found.Filter, "Static mappings made"), builds);
   const auto structured = MakeStructuredGrid();
-  for (vtkIdType id = 0; id < structured->GetNumberOfPoints(); ++id)
-  {
-    const glm::dvec3 p = glm::round(64.0 * GetPoint(structured, id)) / 64.0;
-    structured->GetPoints()->SetPoint(id, &p.x);
-  }
+  MovePoints(structured, [](const glm::dvec3& p) { return glm::round(64.0 * p) / 64.0; });
   SetDisplacements(structured, BendExactly);
   expected.Filter->SetDeformationData(MakeHexahedra(structured, [](int) { return false; }));
-  for (vtkIdType id = 0; id < structured->GetNumberOfPoints(); ++id)
-  {
-    const glm::dvec3 p = BendExactly(GetPoint(structured, id));
-    structured->GetPoints()->SetPoint(id, &p.x);
-  }
+  MovePoints(structured, BendExactly);
   found.Filter->SetDeformationData(structured);
   EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
   // A ball is carved out of the deformed volume.
@@ -689,11 +680,7 @@ TEST(DeformMeshes, Units)
   const auto volume = MakeImage({ { 0, 9, 0, 8, 0, 7 } }, glm::dvec3(1.0), glm::dvec3(20, 30, -40));
   AddScalars<short>(volume, "value", [](const glm::dvec3& p) { return p.x; });
   const Grid mesh = MakeBentMesh(volume);
-  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
-  {
-    const glm::dvec3 point = 0.001 * GetPoint(mesh, id);
-    mesh->GetPoints()->SetPoint(id, &point.x);
-  }
+  MovePoints(mesh, [](const glm::dvec3& p) { return 0.001 * p; });
   const Grid more = AddUnusedNodes(mesh, glm::dvec3(25.0, 35.0, -35.0), glm::dvec3(0.0));
   const std::string boxes = "The box of the mesh is x from 0.0195 to 0.0295, y from 0.0295 to "
                             "0.0385, z from -0.0405 to -0.0325, and that of the volume x from 20 "

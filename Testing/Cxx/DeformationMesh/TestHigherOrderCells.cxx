@@ -609,11 +609,7 @@ TEST(HigherOrderCells, Volume)
   for (const bool midsides : { true, false })
   {
     const Grid grid = MakeBlocks(midsides ? VTK_QUADRATIC_TETRA : VTK_TETRA, 1, false, 1);
-    for (vtkIdType id = 0; id < grid->GetNumberOfPoints(); ++id)
-    {
-      const glm::dvec3 point = 20.0 * GetPoint(grid, id);
-      grid->GetPoints()->SetPoint(id, &point.x);
-    }
+    MovePoints(grid, [](const glm::dvec3& p) { return 20.0 * p; });
     SetDisplacements(grid, [&](const glm::dvec3& p) { return p + bend(p); });
     Deformed deformed(volume, grid);
     vtkImageData* output = deformed.Update();
@@ -845,12 +841,7 @@ TEST(HigherOrderCells, ConcaveVolume)
   for (unsigned int seed = 0; seed < 8; ++seed)
   {
     const Grid mesh = MakePrisms(angle, 1, seed);
-    for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
-    {
-      glm::dvec3 point = GetPoint(mesh, id);
-      point.z = 0.5 + 8.0 * point.z;
-      mesh->GetPoints()->SetPoint(id, &point.x);
-    }
+    MovePoints(mesh, [](const glm::dvec3& p) { return glm::dvec3(p.x, p.y, 0.5 + 8.0 * p.z); });
     // An affine displacement of the nodes is an affine displacement of the whole cell.
     SetDisplacements(mesh, [](const glm::dvec3& p) { return p + glm::dvec3(1.0, 2.0, p.x / 3.0); });
     Deformed deformed(volume, mesh);
@@ -859,14 +850,12 @@ TEST(HigherOrderCells, ConcaveVolume)
     EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), (12 * 4 + 4 * 4) * 8);
     // When its nodes at rest are moved so that it is convex, the cell is split without a derived
     // node.
-    for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
-    {
-      glm::dvec3 point = GetPoint(mesh, id);
-      point += glm::dvec3(point.x == 4.5 && point.y == 4.5 ? 4.0 : 0.0);
-      point.z = std::min(point.z, 8.5);
-      mesh->GetPoints()->SetPoint(id, &point.x);
-    }
-    mesh->GetPoints()->Modified();
+    MovePoints(mesh,
+      [](const glm::dvec3& p)
+      {
+        const glm::dvec3 point = p + glm::dvec3(p.x == 4.5 && p.y == 4.5 ? 4.0 : 0.0);
+        return glm::dvec3(point.x, point.y, std::min(point.z, 8.5));
+      });
     Deformed fresh(volume, mesh);
     fresh.Filter->SetResamplerToMeshRasterization();
     EXPECT_TRUE(AreEqual(deformed.Update(), fresh.Update()));

@@ -103,12 +103,9 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeHead()
   head->GetBounds(bounds);
   const glm::dvec3 low(bounds[0], bounds[2], bounds[4]);
   const glm::dvec3 high(bounds[1], bounds[3], bounds[5]);
-  for (vtkIdType id = 0; id < head->GetNumberOfPoints(); ++id)
-  {
-    const glm::dvec3 place =
-      Center + 22.0 / (high.y - low.y) * (GetPoint(head, id) - 0.5 * (low + high));
-    head->GetPoints()->SetPoint(id, &place.x);
-  }
+  MovePoints(head,
+    [&](const glm::dvec3& p)
+    { return Center + 22.0 / (high.y - low.y) * (p - 0.5 * (low + high)); });
   return head;
 }
 

@@ -150,17 +150,17 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(double side, int nodes, double 
   mesh->DeepCopy(source->GetOutput());
   std::mt19937 random(5);
   std::uniform_real_distribution<double> between(-jitter, jitter);
-  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
-  {
-    glm::dvec3 point = GetPoint(mesh, id);
-    const bool isInner = glm::all(glm::greaterThan(point, glm::dvec3(0.0))) &&
-      glm::all(glm::lessThan(point, glm::dvec3(side)));
-    for (int axis = 0; axis < 3 && isInner; ++axis)
+  MovePoints(mesh,
+    [&](glm::dvec3 point)
     {
-      point[axis] += between(random) * side / (nodes - 1);
-    }
-    mesh->GetPoints()->SetPoint(id, &point.x);
-  }
+      const bool isInner = glm::all(glm::greaterThan(point, glm::dvec3(0.0))) &&
+        glm::all(glm::lessThan(point, glm::dvec3(side)));
+      for (int axis = 0; axis < 3 && isInner; ++axis)
+      {
+        point[axis] += between(random) * side / (nodes - 1);
+      }
+      return point;
+    });
   return mesh;
 }
 

@@ -398,11 +398,7 @@ TEST(TenNodeElements, Prescribed)
     // The mesh is in millimeters.
     vtkNew<vtkUnstructuredGrid> scaled;
     scaled->DeepCopy(cube);
-    for (vtkIdType i = 0; i < scaled->GetNumberOfPoints(); ++i)
-    {
-      const glm::dvec3 position = 1e3 * GetPoint(cube, i);
-      scaled->GetPoints()->SetPoint(i, &position.x);
-    }
+    MovePoints(scaled, [](const glm::dvec3& p) { return 1e3 * p; });
     Elements elements(scaled);
     elements.Filter->SetLengthUnitToMillimetre();
     EXPECT_EQ(elements.TryUpdate(), "");

@@ -132,21 +132,12 @@ TEST_F(DeformMisuse, Meshes)
   this->Expect("a mesh of triangles", "no tetrahedra");
 
   auto away = this->CopyMesh();
-  for (vtkIdType id = 0; id < away->GetNumberOfPoints(); ++id)
-  {
-    const glm::dvec3 point = GetPoint(away, id) + glm::dvec3(1000.0, 0.0, 0.0);
-    away->GetPoints()->SetPoint(id, &point.x);
-  }
+  MovePoints(away, Shift(1000.0, 0.0, 0.0));
   this->GetFilter()->SetDeformationData(away);
   this->Expect("a mesh outside the volume", "volume");
 
   auto flat = this->CopyMesh();
-  for (vtkIdType id = 0; id < flat->GetNumberOfPoints(); ++id)
-  {
-    glm::dvec3 point = GetPoint(flat, id);
-    point.z = 3.0;
-    flat->GetPoints()->SetPoint(id, &point.x);
-  }
+  MovePoints(flat, [](const glm::dvec3& p) { return glm::dvec3(p.x, p.y, 3.0); });
   this->GetFilter()->SetDeformationData(flat);
   this->Expect("a mesh of flat tetrahedra only", "flat");
 
@@ -377,12 +368,7 @@ TEST_F(DeformMisuse, Units)
   deformed.Filter->SetOutsideModeToKeep();
   deformed.Filter->Update();
   EXPECT_EQ(deformed.TakeWarning(), "");
-  for (vtkIdType point = 0; point < mesh->GetNumberOfPoints(); ++point)
-  {
-    const glm::dvec3 inMeters = 0.001 * GetPoint(mesh, point);
-    mesh->GetPoints()->SetPoint(point, &inMeters.x);
-  }
-  mesh->GetPoints()->Modified();
+  MovePoints(mesh, [](const glm::dvec3& p) { return 0.001 * p; });
   SetDisplacements(mesh, Shift(0.001, 0.0, 0.0));
   deformed.Filter->Update();
   EXPECT_TRUE(HasPart(deformed.TakeWarning(), "meters"));
