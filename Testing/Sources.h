@@ -42,6 +42,8 @@ public:
   bool AnnouncesArrays = true;
   /// Whether the source makes an extent that differs from the requested one.
   bool GivesOtherParts = false;
+  /// Announced instead of the extent of the volume, unless it is empty.
+  std::array<int, 6> WholeExtent{ { 0, -1, 0, -1, 0, -1 } };
 
   std::vector<std::array<int, 6>> Made;
   /// The number of voxels of the largest part made so far.
@@ -67,7 +69,9 @@ protected:
     vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
   {
     vtkInformation* info = output->GetInformationObject(0);
-    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), this->Volume->GetExtent(), 6);
+    const bool isOther = this->WholeExtent[0] <= this->WholeExtent[1];
+    info->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(),
+      isOther ? this->WholeExtent.data() : this->Volume->GetExtent(), 6);
     info->Set(vtkDataObject::ORIGIN(), this->Volume->GetOrigin(), 3);
     info->Set(vtkDataObject::SPACING(), this->Volume->GetSpacing(), 3);
     info->Set(vtkDataObject::DIRECTION(), this->Volume->GetDirectionMatrix()->GetData(), 9);

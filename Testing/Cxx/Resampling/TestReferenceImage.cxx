@@ -3,14 +3,9 @@
 // those of a linear function of the world position under an affine map.
 #include "FilterTesting.h"
 
-#include <vtkDataObject.h>
-#include <vtkImageAlgorithm.h>
-#include <vtkInformation.h>
-#include <vtkInformationDoubleVectorKey.h>
-#include <vtkInformationVector.h>
-#include <vtkObjectFactory.h>
+#include "../../Sources.h"
+
 #include <vtkPolyData.h>
-#include <vtkStreamingDemandDrivenPipeline.h>
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -22,45 +17,9 @@
 #include <vector>
 
 using namespace filterTesting;
-using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 namespace
 {
-
-/// A source that announces the grid of an image, and counts how often it is executed.
-class CountingSource : public vtkImageAlgorithm
-{
-public:
-  static CountingSource* New();
-  vtkTypeMacro(CountingSource, vtkImageAlgorithm);
-
-  vtkSmartPointer<vtkImageData> Image;
-  /// Announced instead of the extent of the image, if it is not empty.
-  Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } };
-  int Executions = 0;
-
-protected:
-  CountingSource() { this->SetNumberOfInputPorts(0); }
-
-  int RequestInformation(
-    vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
-  {
-    vtkInformation* info = output->GetInformationObject(0);
-    info->Set(Pipeline::WHOLE_EXTENT(),
-      this->WholeExtent[1] > 0 ? this->WholeExtent.data() : this->Image->GetExtent(), 6);
-    info->Set(vtkDataObject::ORIGIN(), this->Image->GetOrigin(), 3);
-    info->Set(vtkDataObject::SPACING(), this->Image->GetSpacing(), 3);
-    info->Set(vtkDataObject::DIRECTION(), this->Image->GetDirectionMatrix()->GetData(), 9);
-    return 1;
-  }
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
-  {
-    ++this->Executions;
-    vtkImageData::GetData(output)->ShallowCopy(this->Image);
-    return 1;
-  }
-};
-vtkStandardNewMacro(CountingSource);
 
 const glm::dmat3 Matrix(1.1, 0.2, -0.1, -0.3, 0.9, 0.15, 0.1, -0.2, 1.2);
 const glm::dvec3 Offset(1.5, -0.7, 0.4);
@@ -355,34 +314,38 @@ TEST(ReferenceImage, DataAreNotRequested)
 {
   auto volume = MakeOblique();
   auto mesh = MakeMoved(volume);
-  vtkNew<CountingSource> source;
-  source->Image = MakeReference(volume, true);
+  vtkNew<PartSource> source;
+  source->CanMakeParts = false;
+  auto reference = MakeReference(volume, true);
+  source->SetVolume(reference);
   Deformed deformed(volume, mesh);
   deformed.Filter->SetBackgroundValue(-1000.0);
   deformed.Filter->SetReferenceConnection(source->GetOutputPort());
-  CheckValues(deformed, volume, source->Image);
+  CheckValues(deformed, volume, reference);
   // The reference image changes, and a part of the output is requested.
-  source->Image = MakeReference(volume, false);
-  source->Modified();
-  CheckValues(deformed, volume, source->Image);
+  reference = MakeReference(volume, false);
+  source->SetVolume(reference);
+  CheckValues(deformed, volume, reference);
   int extent[6] = { 6, 20, 0, 20, 12, 30 };
   source->Modified();
   deformed.Filter->UpdateInformation();
   deformed.Filter->UpdateExtent(extent);
   EXPECT_EQ(deformed.TakeErrors(), 0);
-  EXPECT_EQ(source->Executions, 0);
+  EXPECT_TRUE(source->Made.empty());
 
   // An inverse field that is the reference image, too.
-  vtkNew<CountingSource> field;
-  field->Image = MakeField(volume, true);
+  const auto inverse = MakeField(volume, true);
+  vtkNew<PartSource> field;
+  field->CanMakeParts = false;
+  field->SetVolume(inverse);
   Deformed own(volume, nullptr);
   own.Filter->SetBackgroundValue(-1000.0);
   own.Filter->SetDeformationConnection(field->GetOutputPort());
   own.Filter->SetReferenceConnection(field->GetOutputPort());
   own.Filter->FieldIsInverseOn();
   vtkImageData* output = own.Update();
-  EXPECT_TRUE(HasGridOf(output, field->Image));
-  EXPECT_EQ(field->Executions, 1);
+  EXPECT_TRUE(HasGridOf(output, inverse));
+  EXPECT_EQ(field->Made.size(), 1U);
   EXPECT_GT(own.Filter->GetNumberOfCoveredVoxels(), 10);
 }
 
@@ -517,8 +480,9 @@ TEST(ReferenceImage, Misuse)
   fails(spoilt, "beyond 2^21");
   deformed.Filter->SetDisplacementScale(1e5);
   expectError("spacing of the output or of its reference image");
-  vtkNew<CountingSource> large;
-  large->Image = copy();
+  vtkNew<PartSource> large;
+  large->CanMakeParts = false;
+  large->SetVolume(copy());
   large->WholeExtent = { { 0, 1 << 20, 0, 1 << 20, 0, 1 << 20 } };
   deformed.Filter->SetReferenceConnection(large->GetOutputPort());
   expectError("The reference image has more than 2^48 voxels");
