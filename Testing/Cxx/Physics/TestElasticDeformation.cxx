@@ -30,8 +30,15 @@ bool AreEqual(vtkFloatArray* a, vtkFloatArray* b)
 }
 
 template <typename Filter>
-void CheckMisuse()
+class ElasticModels : public testing::Test
 {
+};
+using Models = testing::Types<vtkMassSpringDeformation, vtkFiniteElementDeformation>;
+TYPED_TEST_SUITE(ElasticModels, Models);
+
+TYPED_TEST(ElasticModels, Misuse)
+{
+  using Filter = TypeParam;
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<Filter> simulated(bar);
@@ -190,9 +197,10 @@ std::string UpdateAndWarn(Simulated<Filter>& simulated)
 }
 
 // Warnings about a probably wrong length unit, and about inverted tetrahedra.
-template <typename Filter>
-void CheckWarnings(double push)
+TYPED_TEST(ElasticModels, Warnings)
 {
+  using Filter = TypeParam;
+  constexpr double push = HasMidSides<Filter> ? 0.02 : 0.008;
   // A body of 30 m, and one of 30 micrometers.
   for (const double unit : { 1e-3, 1e3 })
   {
@@ -340,9 +348,9 @@ TEST(ElasticDeformation, Times)
 }
 
 // A simulation continues with other materials, and starts again with another mesh.
-template <typename Filter>
-void CheckContinuedSimulation()
+TYPED_TEST(ElasticModels, ContinuedSimulation)
 {
+  using Filter = TypeParam;
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<Filter> simulated(bar);
   simulated.Filter->SetGravity(0.0, 0.0, 2.0);
@@ -397,9 +405,9 @@ void CheckContinuedSimulation()
 }
 
 // An abort of the update after a change of the material.
-template <typename Filter>
-void CheckAborted()
+TYPED_TEST(ElasticModels, Aborted)
 {
+  using Filter = TypeParam;
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   Simulated<Filter> simulated(bar);
   Simulated<Filter> wanted(bar);
@@ -450,9 +458,9 @@ TEST(ElasticDeformation, MisuseOfPresets)
 
 // A preset gives the same result as its three values, to the last bit. Cell arrays have priority
 // over presets.
-template <typename Filter>
-void CheckMaterialPresets()
+TYPED_TEST(ElasticModels, MaterialPresets)
 {
+  using Filter = TypeParam;
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
   const auto simulate = [&](const auto& change)
   {
@@ -544,9 +552,9 @@ TEST(ElasticDeformation, DeformedVolume)
 
 // Handles hold the nodes within HandleRadius, in length units of the mesh. A node in the range of
 // two handles is held by the first one.
-template <typename Filter>
-void CheckHeldNodes()
+TYPED_TEST(ElasticModels, HeldNodes)
 {
+  using Filter = TypeParam;
   const auto bar = MakeBar(0.001); // 10 x 10 x 30 mm in cells of 2.5 mm
   Simulated<Filter> simulated(bar);
   simulated.Filter->SetLengthUnitToMillimetre();
@@ -577,9 +585,9 @@ void CheckHeldNodes()
 }
 
 // Hidden and duplicate cells, and cells with a hidden point, are not part of the body.
-template <typename Filter>
-void CheckHiddenCells()
+TYPED_TEST(ElasticModels, HiddenCells)
 {
+  using Filter = TypeParam;
   const auto bar = MakeBar(0.001);
   const auto simulate = [](vtkUnstructuredGrid* mesh)
   {
@@ -627,42 +635,6 @@ void CheckHiddenCells()
 
 } // namespace
 
-TEST(ElasticDeformation, Misuse)
-{
-  CheckMisuse<vtkMassSpringDeformation>();
-  CheckMisuse<vtkFiniteElementDeformation>();
-}
-
-TEST(ElasticDeformation, Warnings)
-{
-  CheckWarnings<vtkMassSpringDeformation>(0.008);
-  CheckWarnings<vtkFiniteElementDeformation>(0.02);
-}
-
-TEST(ElasticDeformation, MaterialPresets)
-{
-  CheckMaterialPresets<vtkMassSpringDeformation>();
-  CheckMaterialPresets<vtkFiniteElementDeformation>();
-}
-
-TEST(ElasticDeformation, ContinuedSimulation)
-{
-  CheckContinuedSimulation<vtkMassSpringDeformation>();
-  CheckContinuedSimulation<vtkFiniteElementDeformation>();
-}
-
-TEST(ElasticDeformation, Aborted)
-{
-  CheckAborted<vtkMassSpringDeformation>();
-  CheckAborted<vtkFiniteElementDeformation>();
-}
-
-TEST(ElasticDeformation, HeldNodes)
-{
-  CheckHeldNodes<vtkFiniteElementDeformation>();
-  CheckHeldNodes<vtkMassSpringDeformation>();
-}
-
 // The array "HeldNode" of the handles names nodes.
 TEST(ElasticDeformation, HandlesOfNodes)
 {
@@ -704,12 +676,6 @@ TEST(ElasticDeformation, HandlesBetweenNodes)
   EXPECT_EQ(simulated.Filter->GetNumberOfHeldNodes(), 10);
   simulated.Filter->SetHandlesData(MakeHandles({ { { 4.1, 4.3, 31.0 }, { 4.6, 4.3, 31.0 } } }));
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "no tetrahedron contains this position"));
-}
-
-TEST(ElasticDeformation, HiddenCells)
-{
-  CheckHiddenCells<vtkFiniteElementDeformation>();
-  CheckHiddenCells<vtkMassSpringDeformation>();
 }
 
 TEST(ElasticDeformation, HangingBar)
