@@ -2,6 +2,7 @@
 // ChainMail of the interface for C is equal, bit by bit, to vtkChainMailDeformation. A dv_deformer
 // that uses its displacements is equal to a vtkDeformVolumeFilter downstream of the filter.
 // Testing/C/TestChainMail.c tests misuse.
+#include "ArrayMaking.h"
 #include "CTesting.h"
 #include "ChainMailTesting.h"
 #include "FilterTesting.h"
@@ -185,9 +186,7 @@ TEST(CChainMail, Steps)
 TEST(CChainMail, Masks)
 {
   const auto volume = MakeTwoArrays();
-  vtkNew<vtkUnsignedCharArray> pinned;
-  pinned->SetName("Pinned");
-  pinned->SetNumberOfTuples(volume->GetNumberOfPoints());
+  const auto pinned = MakeArray<vtkUnsignedCharArray>("Pinned", volume->GetNumberOfPoints());
   for (vtkIdType i = 0; i < pinned->GetNumberOfTuples(); ++i)
   {
     pinned->SetValue(i, i % 20 < 2 ? 7 : 0);

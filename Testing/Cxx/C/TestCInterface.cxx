@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Results of the interface for C are equal to those of vtkDeformVolumeFilter, to the last bit.
+#include "ArrayMaking.h"
 #include "CTesting.h"
 #include "FilterTesting.h"
 
@@ -246,10 +247,7 @@ TEST(CInterface, Fields)
 TEST(CInterface, ExtraAndMasks)
 {
   auto volume = MakeTwoArrays();
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName("vtkGhostType");
-  ghosts->SetNumberOfTuples(volume->GetNumberOfPoints());
-  ghosts->Fill(0);
+  const auto ghosts = MakeArray<vtkUnsignedCharArray>("vtkGhostType", volume->GetNumberOfPoints());
   for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); i += 37)
   {
     ghosts->SetValue(i, 2);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkChainMailDeformation: closed forms in world coordinates, materials, pinned voxels and cuts by
 // arrays, states between executions, and a vtkDeformVolumeFilter downstream.
+#include "ArrayMaking.h"
 #include "ChainMailTesting.h"
 
 #include <vtkDataObject.h>
@@ -203,10 +204,7 @@ void CheckLabels(bool byRanges)
 TEST(ChainMailDeformation, PinsAndCuts)
 {
   const auto volume = MakeVolume({ { 0, 20, 0, 10, 0, 10 } });
-  vtkNew<vtkLongLongArray> pinned;
-  pinned->SetName("Pinned");
-  pinned->SetNumberOfTuples(volume->GetNumberOfPoints());
-  pinned->Fill(0);
+  const auto pinned = MakeArray<vtkLongLongArray>("Pinned", volume->GetNumberOfPoints());
   pinned->SetValue(GetId(volume, 10, 5, 5), -3);
   volume->GetPointData()->AddArray(pinned);
   Dragged dragged(volume);
@@ -219,9 +217,8 @@ TEST(ChainMailDeformation, PinsAndCuts)
   EXPECT_EQ(GetTuple(found, GetId(volume, 10, 5, 5)), glm::dvec3(0, 0, 0));
   // With a cut between handle and pinned voxels the drag is possible, and does not move voxels
   // beyond the cut.
-  vtkNew<vtkUnsignedCharArray> active;
-  active->SetName("ActiveTetrahedra");
-  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  const auto active =
+    MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", volume->GetNumberOfCells());
   for (vtkIdType cell = 0; cell < active->GetNumberOfTuples(); ++cell)
   {
     active->SetValue(cell, cell % 20 == 8 ? 0 : 31);
@@ -327,9 +324,8 @@ TEST(ChainMailDeformation, States)
   const vtkIdType whole = dragged.Filter->SaveState();
   vtkNew<vtkImageData> cut;
   cut->ShallowCopy(volume);
-  vtkNew<vtkUnsignedCharArray> active;
-  active->SetName("ActiveTetrahedra");
-  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  const auto active =
+    MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", volume->GetNumberOfCells());
   for (vtkIdType cell = 0; cell < volume->GetNumberOfCells(); ++cell)
   {
     active->SetValue(cell, cell % 30 == 12 ? 0 : 31);

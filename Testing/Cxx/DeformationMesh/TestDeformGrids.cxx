@@ -2,6 +2,7 @@
 // One mesh in different grids: grids that share arrays, equal copies, a deformed mesh and one at
 // rest, other orders of points and cells. Edits of a grid in place must be detected. All results
 // are compared bit by bit with those of a new filter.
+#include "ArrayMaking.h"
 #include "FilterTesting.h"
 
 #include <vtkCellArray.h>
@@ -195,10 +196,8 @@ TEST(DeformGrids, EditsInPlace)
   meshes.Mesh->InsertNextCell(VTK_TETRA, 4, corners);
   meshes.Mesh->Modified();
   meshes.Expect("one cell more", 1);
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-  ghosts->SetNumberOfTuples(meshes.Mesh->GetNumberOfCells());
-  ghosts->Fill(0);
+  const auto ghosts = MakeArray<vtkUnsignedCharArray>(
+    vtkDataSetAttributes::GhostArrayName(), meshes.Mesh->GetNumberOfCells());
   ghosts->SetValue(4, vtkDataSetAttributes::HIDDENCELL);
   meshes.Mesh->GetCellData()->AddArray(ghosts);
   meshes.Expect("a hidden cell, which leaves a hole", 1);

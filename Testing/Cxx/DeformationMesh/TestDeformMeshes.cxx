@@ -2,6 +2,7 @@
 // Meshes as other programs write them: nodes that no cell uses, blocks without displacements,
 // structured and rectilinear grids, points that are deformed already, other length units, and
 // warnings about vectors and tensors of the volume, which the filter does not rotate.
+#include "ArrayMaking.h"
 #include "FilterTesting.h"
 #include "UpdateChecks.h"
 
@@ -227,9 +228,7 @@ TEST(DeformMeshes, Blocks)
   solids->GetPointData()->Initialize();
   // In other blocks an array of this name may contain something else.
   const Grid other = MakeShells();
-  vtkNew<vtkDoubleArray> thickness;
-  thickness->SetName(name);
-  thickness->SetNumberOfTuples(other->GetNumberOfPoints());
+  const auto thickness = MakeArray<vtkDoubleArray>(name, other->GetNumberOfPoints());
   thickness->Fill(2.0);
   other->GetPointData()->AddArray(thickness);
   for (const Grid& shells : { MakeShells(), other })

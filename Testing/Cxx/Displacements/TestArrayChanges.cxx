@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The log of changes of an array: logged ranges, and changes that are not logged.
 // vtkDeformVolumeFilter reads only the logged tuples. Testing/Fuzz tests random edits with logs.
+#include "ArrayMaking.h"
 #include "FilterTesting.h"
 #include "vtkArrayChanges.h"
 
@@ -123,9 +124,8 @@ TEST(ArrayChanges, Filter)
     volume, "value", [](const glm::dvec3& p) { return p.x + 40.0 * p.y + 9.0 * p.z; });
   const auto mesh = MakeMesh(volume, 12, 1.0);
   SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
-  vtkNew<vtkUnsignedCharArray> active;
-  active->SetName("ActiveTetrahedra");
-  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  const auto active =
+    MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", volume->GetNumberOfCells());
   active->FillValue(31);
   active->SetValue(0, 1); // a mask in which all tetrahedra are active would not be stored
   volume->GetCellData()->AddArray(active);
@@ -185,10 +185,8 @@ TEST(ArrayChanges, Filter)
 
   // The log of the mask does not contain cells that the ghost array hides.
   maskLog->AddTuples(0, 0);
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-  ghosts->SetNumberOfTuples(volume->GetNumberOfCells());
-  ghosts->Fill(0);
+  const auto ghosts = MakeArray<vtkUnsignedCharArray>(
+    vtkDataSetAttributes::GhostArrayName(), volume->GetNumberOfCells());
   for (int i = 0; i < 8; ++i)
   {
     ghosts->SetValue(

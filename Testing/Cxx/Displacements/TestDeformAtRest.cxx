@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Without a deformation on port 1 the output is the volume at rest, as with a deformation of zeros.
+#include "ArrayMaking.h"
 #include "FilterTesting.h"
 
 #include <vtkCellData.h>
@@ -22,9 +23,8 @@ vtkSmartPointer<vtkImageData> MakeCutVolume()
   volume->SetOrigin(100.0, -50.0, 7.0);
   SetObliqueDirection(volume);
   AddScalars<float>(volume, "more", [](const glm::dvec3& p) { return 0.1 * p.x - p.y * p.z; });
-  vtkNew<vtkUnsignedCharArray> active;
-  active->SetName("ActiveTetrahedra");
-  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  const auto active =
+    MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", volume->GetNumberOfCells());
   for (vtkIdType cell = 0; cell < volume->GetNumberOfCells(); ++cell)
   {
     active->SetValue(cell, static_cast<unsigned char>(cell % 12 < 5 ? cell % 32 : 31));
@@ -73,9 +73,7 @@ TEST(DeformAtRest, Misuse)
 
   // Mesh rasterization cannot do smooth cuts, also without a deformation.
   const auto cut = MakeVolume();
-  vtkNew<vtkUnsignedCharArray> crossed;
-  crossed->SetName("CutTetrahedra");
-  crossed->SetNumberOfTuples(cut->GetNumberOfCells());
+  const auto crossed = MakeArray<vtkUnsignedCharArray>("CutTetrahedra", cut->GetNumberOfCells());
   crossed->Fill(31);
   cut->GetCellData()->AddArray(crossed);
   AddScalars<float>(cut, "CutDistance", [](const glm::dvec3& p) { return p.x - 4.5; });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Large displacement fields of floats, with a point at each voxel, are read in place. The result
 // must be equal, bit by bit, to that of the same field as doubles, which is converted.
+#include "ArrayMaking.h"
 #include "Device.h"
 #include "FilterTesting.h"
 
@@ -43,10 +44,8 @@ public:
         return p +
           glm::dvec3(3.0 * std::sin(0.1 * p.y), -1.7 * std::cos(0.07 * p.z), 0.03 * p.x - 0.4);
       });
-    vtkNew<vtkDoubleArray> doubles;
-    doubles->SetName("displacement");
-    doubles->SetNumberOfComponents(3);
-    doubles->SetNumberOfTuples(this->Doubles->GetNumberOfPoints());
+    const auto doubles =
+      MakeArray<vtkDoubleArray>("displacement", this->Doubles->GetNumberOfPoints(), 3);
     this->Doubles->GetPointData()->SetVectors(doubles);
     this->ForBoth([](vtkDeformVolumeFilter* filter) { filter->SetResamplerToExact(); });
   }
@@ -141,9 +140,8 @@ TEST(DeformFieldsInPlace, Masks)
   fields.ForBoth(
     [](vtkDeformVolumeFilter* filter) { filter->SetOutputBoundsModeToVolumeBounds(); });
   fields.Compare("a field");
-  vtkNew<vtkUnsignedCharArray> active;
-  active->SetName("ActiveTetrahedra");
-  active->SetNumberOfTuples(fields.Volume->GetNumberOfCells());
+  const auto active =
+    MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", fields.Volume->GetNumberOfCells());
   active->Fill(31);
   fields.Volume->GetCellData()->AddArray(active);
   fields.Compare("a mask");

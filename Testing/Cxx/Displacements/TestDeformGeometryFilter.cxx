@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkDeformGeometryFilter: points are moved by a deformation, and by its inverse.
+#include "ArrayMaking.h"
 #include "KeepTesting.h"
 
 #include "vtkDeformGeometryFilter.h"
@@ -711,10 +712,8 @@ TEST(DeformGeometryFilter, Field)
   EXPECT_FALSE(subject.IsValid(1));
 
   // Vectors of hidden points are undefined.
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-  ghosts->SetNumberOfTuples(field->GetNumberOfPoints());
-  ghosts->Fill(0);
+  const auto ghosts = MakeArray<vtkUnsignedCharArray>(
+    vtkDataSetAttributes::GhostArrayName(), field->GetNumberOfPoints());
   ghosts->SetValue(3 + 8 * (4 + 8 * 5), vtkDataSetAttributes::HIDDENPOINT);
   field->GetPointData()->AddArray(ghosts);
   field->GetPointData()->GetVectors()->SetComponent(

@@ -2,6 +2,7 @@
 // OutsideMode KEEP with displacement fields, forward and inverse: tissue outside the grid of the
 // field is kept, and the displacement at the faces of the grid fades to zero within FadeDistance.
 // The reference is another field, which has the displacement of each voxel.
+#include "ArrayMaking.h"
 #include "KeepTesting.h"
 
 #include "vtkCutVolume.h"
@@ -441,10 +442,8 @@ TEST(DeformKeepField, Undefined)
 {
   const auto volume = MakeVolume(false);
   const auto field = MakeField(volume, 1.0, false);
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-  ghosts->SetNumberOfTuples(field->GetNumberOfPoints());
-  ghosts->Fill(0);
+  const auto ghosts = MakeArray<vtkUnsignedCharArray>(
+    vtkDataSetAttributes::GhostArrayName(), field->GetNumberOfPoints());
   ghosts->SetValue(0, vtkDataSetAttributes::HIDDENPOINT);
   field->GetPointData()->AddArray(ghosts);
   for (const bool isInverse : { false, true })

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Different descriptions of one deformation give the same result: displacements, meshes at rest and
 // deformed, composite datasets, cells other than tetrahedra, and displacement fields.
+#include "ArrayMaking.h"
 #include "FilterTesting.h"
 
 #include <vtkCellArray.h>
@@ -117,10 +118,7 @@ TEST(DeformSources, ChoiceOfDisplacements)
   EXPECT_EQ(GetExtent(deformed.Update()), (Extent{ { 0, 13, -6, 5, 0, 9 } }));
 
   // Displacements may have any numeric type.
-  vtkNew<vtkDoubleArray> doubles;
-  doubles->SetName("doubles");
-  doubles->SetNumberOfComponents(3);
-  doubles->SetNumberOfTuples(mesh->GetNumberOfPoints());
+  const auto doubles = MakeArray<vtkDoubleArray>("doubles", mesh->GetNumberOfPoints(), 3);
   doubles->Fill(1.0);
   mesh->GetPointData()->AddArray(doubles);
   mesh->Modified();

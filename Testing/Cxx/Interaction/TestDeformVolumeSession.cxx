@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkDeformVolumeSession: misuse, a drag compared with filters without a session, random sessions
 // that are undone completely, files, and the thread.
+#include "ArrayMaking.h"
 #include "ChainMailTesting.h"
 #include "RunTests.h"
 
@@ -810,10 +811,7 @@ TEST(DeformVolumeSession, Files)
 
   // The same mesh with other fixed nodes.
   const auto mesh = MakeMesh(volume, 2, 1.0);
-  vtkNew<vtkUnsignedCharArray> fixed;
-  fixed->SetName("Fixed");
-  fixed->SetNumberOfTuples(mesh->GetNumberOfPoints());
-  fixed->Fill(0);
+  const auto fixed = MakeArray<vtkUnsignedCharArray>("Fixed", mesh->GetNumberOfPoints());
   fixed->SetValue(0, 1);
   mesh->GetPointData()->AddArray(fixed);
   EXPECT_TRUE(

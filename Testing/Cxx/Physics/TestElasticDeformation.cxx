@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkMassSpringDeformation and vtkFiniteElementDeformation in a pipeline: misuse, closed forms in
 // both length units, times, simulations that continue, and the deformed volume.
+#include "ArrayMaking.h"
 #include "ElasticTesting.h"
 
 #include <vtkCellArray.h>
@@ -85,10 +86,7 @@ TYPED_TEST(ElasticModels, Misuse)
   {
     const auto add = [&](vtkUnstructuredGrid* mesh, double value, int components)
     {
-      vtkNew<vtkDoubleArray> array;
-      array->SetName(name);
-      array->SetNumberOfComponents(components);
-      array->SetNumberOfTuples(mesh->GetNumberOfCells());
+      const auto array = MakeArray<vtkDoubleArray>(name, mesh->GetNumberOfCells(), components);
       array->Fill(value);
       mesh->GetCellData()->AddArray(array);
     };
@@ -497,9 +495,7 @@ TYPED_TEST(ElasticModels, MaterialPresets)
   EXPECT_TRUE(AreEqual(simulate([](Filter* filter) { filter->SetMaterialPresetToLiver(); }),
     byNumbers(5500.0, 0.49, 1060.0)));
 
-  vtkNew<vtkDoubleArray> stiffness;
-  stiffness->SetName("YoungModulus");
-  stiffness->SetNumberOfTuples(bar->GetNumberOfCells());
+  const auto stiffness = MakeArray<vtkDoubleArray>("YoungModulus", bar->GetNumberOfCells());
   stiffness->Fill(3e4);
   bar->GetCellData()->AddArray(stiffness);
   const auto moved = simulate([](Filter* filter) { filter->SetMaterialPresetToLiver(); });
@@ -624,9 +620,7 @@ TYPED_TEST(ElasticModels, HiddenCells)
   masked->GetCellData()->AddArray(hidden);
   EXPECT_EQ(simulate(masked), expected);
   masked->ShallowCopy(bar);
-  vtkNew<vtkUnsignedCharArray> valid;
-  valid->SetName("vtkValidPointMask");
-  valid->SetNumberOfValues(bar->GetNumberOfPoints());
+  const auto valid = MakeArray<vtkUnsignedCharArray>("vtkValidPointMask", bar->GetNumberOfPoints());
   valid->Fill(1);
   valid->SetValue(corner, 0);
   masked->GetPointData()->AddArray(valid);

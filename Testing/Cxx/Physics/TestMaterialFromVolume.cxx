@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vtkMaterialFromVolume: misuse, means compared with a search of all voxels, shared arrays, and a
 // simulation with a soft and a stiff part.
+#include "ArrayMaking.h"
 #include "ChainMailTesting.h"
 
 #include "vtkFiniteElementDeformation.h"
@@ -34,9 +35,7 @@ vtkSmartPointer<vtkImageData> MakeVolume()
   volume->SetOrigin(10.0, -4.0, 2.0);
   volume->SetSpacing(1.0, 0.75, 1.5);
   volume->SetDirectionMatrix(0.8, -0.6, 0.0, 0.6, 0.8, 0.0, 0.0, 0.0, 1.0);
-  vtkNew<vtkShortArray> labels;
-  labels->SetName("labels");
-  labels->SetNumberOfTuples(volume->GetNumberOfPoints());
+  const auto labels = MakeArray<vtkShortArray>("labels", volume->GetNumberOfPoints());
   std::mt19937 random(3);
   for (vtkIdType i = 0; i < labels->GetNumberOfTuples(); ++i)
   {
@@ -141,10 +140,7 @@ TEST(MaterialFromVolume, Misuse)
     tested.Filter->SetMaterial(index, 1e4, 0.3, 1000.0);
   }
   EXPECT_EQ(tested.TryUpdate(), "");
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName("vtkGhostType");
-  ghosts->SetNumberOfTuples(7);
-  ghosts->Fill(0);
+  const auto ghosts = MakeArray<vtkUnsignedCharArray>("vtkGhostType", 7);
   volume->GetPointData()->AddArray(ghosts);
   EXPECT_TRUE(HasPart(tested.TryUpdate(), "vtkGhostType"));
   volume->GetPointData()->RemoveArray("vtkGhostType");
@@ -172,9 +168,7 @@ void CheckMeans(bool hides)
 {
   vtkSmartPointer<vtkImageData> volume = MakeVolume();
   vtkSmartPointer<vtkUnstructuredGrid> mesh = MakeMesh(volume, 12);
-  vtkNew<vtkFloatArray> other;
-  other->SetName("other");
-  other->SetNumberOfTuples(mesh->GetNumberOfCells());
+  const auto other = MakeArray<vtkFloatArray>("other", mesh->GetNumberOfCells());
   mesh->GetCellData()->AddArray(other);
   vtkNew<vtkUnsignedCharArray> ghosts;
   if (hides)

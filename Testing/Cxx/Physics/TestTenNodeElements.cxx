@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The ten-node tetrahedra of vtkFiniteElementDeformation: misuse, mid-side nodes that are added,
 // conditions on nodes, cuts, and closed forms.
+#include "ArrayMaking.h"
 #include "ElasticTesting.h"
 #include "TenNodeCells.h"
 
@@ -226,9 +227,7 @@ TEST(TenNodeElements, Output)
     cube->GetPointData()->AddArray(array);
   }
   cube->GetPointData()->SetGlobalIds(ids);
-  vtkNew<vtkDoubleArray> ofCells;
-  ofCells->SetName("OfCells");
-  ofCells->SetNumberOfTuples(cube->GetNumberOfCells());
+  const auto ofCells = MakeArray<vtkDoubleArray>("OfCells", cube->GetNumberOfCells());
   cube->GetCellData()->AddArray(ofCells);
 
   Elements elements(cube);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sources whose pipeline information differs from their data. Either the output contains the whole
 // volume, or an error or a warning states the difference.
+#include "ArrayMaking.h"
 #include "FilterTesting.h"
 
 #include "vtkCutVolume.h"
@@ -232,9 +233,7 @@ TEST(DeformAnnouncements, Extents)
   careless.Subject.Update();
   EXPECT_EQ(GetReported(careless.Subject.Filter, "Volumes sent"), uploads);
   EXPECT_EQ(careless.Subject.TakeWarning(), "");
-  vtkNew<vtkFloatArray> few;
-  few->SetName("few");
-  few->SetNumberOfTuples(7);
+  const auto few = MakeArray<vtkFloatArray>("few", 7);
   careless.Volume->GetPointData()->AddArray(few);
   careless.Fails("a short array of a volume that is cut", "7 tuples");
   careless.Volume->GetPointData()->RemoveArray("few");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Invalid inputs: one error that says what is wrong, an empty output, and a filter that works with
 // valid inputs again.
+#include "ArrayMaking.h"
 #include "FilterTesting.h"
 #include "PolyhedronCells.h"
 
@@ -104,9 +105,7 @@ TEST_F(DeformMisuse, Volumes)
   this->Expect("a volume with an origin that is no number", "rigin");
 
   auto active = MakeVolume();
-  vtkNew<vtkFloatArray> mask;
-  mask->SetName("ActiveTetrahedra");
-  mask->SetNumberOfTuples(active->GetNumberOfCells());
+  const auto mask = MakeArray<vtkFloatArray>("ActiveTetrahedra", active->GetNumberOfCells());
   active->GetCellData()->AddArray(mask);
   this->GetFilter()->SetInputData(active);
   this->Expect("active tetrahedra of another type", "ActiveTetrahedra");
@@ -249,11 +248,7 @@ TEST_F(DeformMisuse, Displacements)
   this->Expect("an array that does not exist", "absent");
 
   auto pairs = this->CopyMesh();
-  vtkNew<vtkFloatArray> two;
-  two->SetName("two");
-  two->SetNumberOfComponents(2);
-  two->SetNumberOfTuples(pairs->GetNumberOfPoints());
-  two->Fill(0.0);
+  const auto two = MakeArray<vtkFloatArray>("two", pairs->GetNumberOfPoints(), 2);
   pairs->GetPointData()->AddArray(two);
   this->GetFilter()->SetDeformationData(pairs);
   this->GetFilter()->SetInputArrayToProcess(
@@ -261,11 +256,7 @@ TEST_F(DeformMisuse, Displacements)
   this->Expect("displacements of two components", "three components");
 
   auto few = this->CopyMesh();
-  vtkNew<vtkFloatArray> less;
-  less->SetName("less");
-  less->SetNumberOfComponents(3);
-  less->SetNumberOfTuples(few->GetNumberOfPoints() - 1);
-  less->Fill(0.0);
+  const auto less = MakeArray<vtkFloatArray>("less", few->GetNumberOfPoints() - 1, 3);
   few->GetPointData()->AddArray(less);
   this->GetFilter()->SetDeformationData(few);
   this->GetFilter()->SetInputArrayToProcess(

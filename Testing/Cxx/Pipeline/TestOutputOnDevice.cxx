@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Outputs that stay on a device, which appears to be a graphics card with memory of its own, until
 // they are read.
+#include "ArrayMaking.h"
 #include "FakeDriver.h"
 #include "FilterTesting.h"
 #include "RunTests.h"
@@ -43,9 +44,7 @@ vtkSmartPointer<vtkImageData> MakeArrays()
   AddScalars<double>(volume, "double", [](const glm::dvec3& p) { return p.x * 0.3 - p.y; });
   AddScalars<unsigned char>(volume, "byte", [](const glm::dvec3& p) { return p.z + p.x; });
   // Consecutive ids are equal when they are rounded to doubles.
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("id");
-  ids->SetNumberOfTuples(volume->GetNumberOfPoints());
+  const auto ids = MakeArray<vtkIdTypeArray>("id", volume->GetNumberOfPoints());
   for (vtkIdType i = 0; i < ids->GetNumberOfValues(); ++i)
   {
     ids->SetValue(i, (vtkIdType{ 1 } << 60) + i);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Point arrays of the volume: types, components, attributes, labels, background, and cell arrays,
 // which are not resampled.
+#include "ArrayMaking.h"
 #include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
@@ -122,10 +123,7 @@ TEST_F(DeformArrays, RolesAndFieldData)
   vtkPointData* data = volume->GetPointData();
   const auto add = [&](const char* name, int components)
   {
-    vtkNew<vtkIntArray> array;
-    array->SetName(name);
-    array->SetNumberOfComponents(components);
-    array->SetNumberOfTuples(volume->GetNumberOfPoints());
+    const auto array = MakeArray<vtkIntArray>(name, volume->GetNumberOfPoints(), components);
     array->Fill(3.0);
     for (int i = 0; i < components; ++i)
     {
@@ -208,9 +206,7 @@ TEST_F(DeformArrays, Labels)
 {
   auto volume = MakeImage({ { 0, 8, 0, 8, 0, 8 } });
   // Ids that differ in bits which float and double do not have.
-  vtkNew<vtkUnsignedLongLongArray> labels;
-  labels->SetName("label");
-  labels->SetNumberOfTuples(volume->GetNumberOfPoints());
+  const auto labels = MakeArray<vtkUnsignedLongLongArray>("label", volume->GetNumberOfPoints());
   const unsigned long long base = (1ULL << 60) + 1;
   for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
   {
@@ -301,10 +297,7 @@ TEST_F(DeformArrays, BackgroundAndRounding)
 {
   auto volume = MakeImage({ { 0, 4, 0, 4, 0, 4 } });
   AddScalars<unsigned char>(volume, "value", [](const glm::dvec3& p) { return 10.0 * p.x; });
-  vtkNew<vtkFloatArray> both;
-  both->SetName("pair");
-  both->SetNumberOfComponents(2);
-  both->SetNumberOfTuples(volume->GetNumberOfPoints());
+  const auto both = MakeArray<vtkFloatArray>("pair", volume->GetNumberOfPoints(), 2);
   both->Fill(2.0);
   volume->GetPointData()->AddArray(both);
   auto mesh = MakeMesh(volume);
@@ -395,9 +388,7 @@ TEST_F(DeformArrays, NotANumberStaysWithinItsTetrahedra)
 TEST_F(DeformArrays, CellArraysAreNamedInAWarning)
 {
   auto volume = MakeVolume();
-  vtkNew<vtkFloatArray> pressure;
-  pressure->SetName("pressure");
-  pressure->SetNumberOfTuples(volume->GetNumberOfCells());
+  const auto pressure = MakeArray<vtkFloatArray>("pressure", volume->GetNumberOfCells());
   pressure->Fill(1.0);
   volume->GetCellData()->AddArray(pressure);
   auto mesh = MakeMesh(volume);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The resamplers MESH_RASTERIZATION and AUTOMATIC of the filter, and cubic interpolation.
+#include "ArrayMaking.h"
 #include "DeviceNeeds.h"
 #include "FilterTesting.h"
 
@@ -197,9 +198,8 @@ TEST_F(DeformRasterization, AffineMap)
 TEST_F(DeformRasterization, Masks)
 {
   auto volume = MakeVolume(Box);
-  vtkNew<vtkUnsignedCharArray> active;
-  active->SetName("ActiveTetrahedra");
-  active->SetNumberOfTuples(volume->GetNumberOfCells());
+  const auto active =
+    MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", volume->GetNumberOfCells());
   for (vtkIdType cell = 0; cell < volume->GetNumberOfCells(); ++cell)
   {
     active->SetValue(cell, static_cast<unsigned char>(cell * 7919 % 32));
@@ -222,10 +222,8 @@ TEST_F(DeformRasterization, Masks)
 
   // With a blanked point, samples to whose value it contributes are not covered.
   volume->GetCellData()->RemoveArray("ActiveTetrahedra");
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-  ghosts->SetNumberOfTuples(volume->GetNumberOfPoints());
-  ghosts->Fill(0);
+  const auto ghosts = MakeArray<vtkUnsignedCharArray>(
+    vtkDataSetAttributes::GhostArrayName(), volume->GetNumberOfPoints());
   const int center[3] = { 4, 9, -1 };
   ghosts->SetValue(
     volume->ComputePointId(const_cast<int*>(center)), vtkDataSetAttributes::HIDDENPOINT);

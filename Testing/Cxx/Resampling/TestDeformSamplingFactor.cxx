@@ -2,6 +2,7 @@
 // SamplingFactor. The output is equal, bit by bit, to that of a filter whose input is a subsampled
 // volume. Also: which data is kept when the factor changes, and which extents are requested from a
 // source that makes parts.
+#include "ArrayMaking.h"
 #include "DivisionCases.h"
 
 #include <vtkCellData.h>
@@ -189,14 +190,9 @@ TEST(DeformSamplingFactor, AgainstSubsampled)
     vectors->SetName("vectors");
     vectors->SetNumberOfComponents(3);
     vectors->SetNumberOfTuples(odd.Volume->GetNumberOfPoints());
-    vtkNew<vtkFloatArray> pairs;
-    pairs->SetName("pairs");
-    pairs->SetNumberOfComponents(2);
-    pairs->SetNumberOfTuples(odd.Volume->GetNumberOfPoints());
-    vtkNew<vtkUnsignedCharArray> colors;
-    colors->SetName("colors");
-    colors->SetNumberOfComponents(3);
-    colors->SetNumberOfTuples(odd.Volume->GetNumberOfPoints());
+    const auto pairs = MakeArray<vtkFloatArray>("pairs", odd.Volume->GetNumberOfPoints(), 2);
+    const auto colors =
+      MakeArray<vtkUnsignedCharArray>("colors", odd.Volume->GetNumberOfPoints(), 3);
     for (vtkIdType id = 0; id < odd.Volume->GetNumberOfPoints(); ++id)
     {
       for (int component = 0; component < 3; ++component)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Additional arrays of the output: rest positions, Jacobians, fold counts, and densities, whose sum
 // the deformation does not change.
+#include "ArrayMaking.h"
 #include "FilterTesting.h"
 
 #include <glm/common.hpp>
@@ -343,10 +344,8 @@ TEST(ExtraArrays, Holes)
       {
         SetDisplacements(field, map);
       }
-      vtkNew<vtkUnsignedCharArray> ghosts;
-      ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-      ghosts->SetNumberOfTuples(field->GetNumberOfPoints());
-      ghosts->Fill(0.0);
+      const auto ghosts = MakeArray<vtkUnsignedCharArray>(
+        vtkDataSetAttributes::GhostArrayName(), field->GetNumberOfPoints());
       Derived subject(volume, field);
       subject.Filter->SetFieldIsInverse(isInverse);
       subject.Expect("");
