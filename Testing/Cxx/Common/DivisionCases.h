@@ -165,27 +165,25 @@ inline std::vector<Case> MakeCases()
     vectors->SetNumberOfComponents(3);
     for (int half = 0; half < 2; ++half)
     {
-      vtkNew<vtkLatticeTetrahedraSource> source;
-      source->SetNumberOfNodes(4, 4, 3);
-      source->EqualSpacingOff();
-      source->SetBounds(bounds[0] - 1.0, bounds[1] + 1.0, bounds[2] - 1.0, bounds[3] + 1.0,
-        half ? middle + 0.1 : bounds[4] - 1.0, half ? bounds[5] + 1.0 : middle);
-      source->Update();
+      const auto lattice =
+        MakeTetrahedra({ { bounds[0] - 1.0, bounds[1] + 1.0, bounds[2] - 1.0, bounds[3] + 1.0,
+                         half ? middle + 0.1 : bounds[4] - 1.0, half ? bounds[5] + 1.0 : middle } },
+          { { 4, 4, 3 } });
       const vtkIdType first = points->GetNumberOfPoints();
-      for (vtkIdType id = 0; id < source->GetOutput()->GetNumberOfPoints(); ++id)
+      for (vtkIdType id = 0; id < lattice->GetNumberOfPoints(); ++id)
       {
-        points->InsertNextPoint(source->GetOutput()->GetPoint(id));
+        points->InsertNextPoint(lattice->GetPoint(id));
         vectors->InsertNextTuple3(half ? 2.3 : -1.1, 0.7, half ? 9.4 : -8.2);
       }
-      for (vtkIdType id = 0; id < source->GetOutput()->GetNumberOfCells(); ++id)
+      for (vtkIdType id = 0; id < lattice->GetNumberOfCells(); ++id)
       {
         vtkNew<vtkIdList> ids;
-        source->GetOutput()->GetCellPoints(id, ids);
+        lattice->GetCellPoints(id, ids);
         for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
         {
           ids->SetId(k, first + ids->GetId(k));
         }
-        whole->InsertNextCell(source->GetOutput()->GetCellType(id), ids);
+        whole->InsertNextCell(lattice->GetCellType(id), ids);
       }
     }
     whole->SetPoints(points);

@@ -110,25 +110,32 @@ inline vtkSmartPointer<vtkImageData> MakeVolume(const Extent& extent = { { 0, 9,
   return volume;
 }
 
+/// A lattice of tetrahedra that fills bounds, with a number of nodes on each axis.
+inline vtkSmartPointer<vtkUnstructuredGrid> MakeTetrahedra(
+  const std::array<double, 6>& bounds, const std::array<int, 3>& nodes)
+{
+  vtkNew<vtkLatticeTetrahedraSource> source;
+  source->SetNumberOfNodes(nodes[0], nodes[1], nodes[2]);
+  source->EqualSpacingOff();
+  source->SetBounds(bounds[0], bounds[1], bounds[2], bounds[3], bounds[4], bounds[5]);
+  source->Update();
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->ShallowCopy(source->GetOutput());
+  return mesh;
+}
+
 /// A lattice of tetrahedra over the world bounds of a volume, which are extended by a margin, in
 /// world units, on each side. A negative margin makes the lattice smaller than the volume.
 inline vtkSmartPointer<vtkUnstructuredGrid> MakeMesh(
   vtkImageData* volume, int nodes = 3, double margin = 0.5)
 {
-  vtkNew<vtkLatticeTetrahedraSource> source;
-  source->SetNumberOfNodes(nodes, nodes, nodes);
-  source->EqualSpacingOff();
-  double bounds[6];
-  volume->GetBounds(bounds);
-  for (int i = 0; i < 6; ++i)
+  std::array<double, 6> bounds;
+  volume->GetBounds(bounds.data());
+  for (std::size_t i = 0; i < 6; ++i)
   {
     bounds[i] += i % 2 == 0 ? -margin : margin;
   }
-  source->SetBounds(bounds);
-  source->Update();
-  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  mesh->ShallowCopy(source->GetOutput());
-  return mesh;
+  return MakeTetrahedra(bounds, { { nodes, nodes, nodes } });
 }
 
 /// Sets displacements that move each point to its image by a map.

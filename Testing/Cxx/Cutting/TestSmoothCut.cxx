@@ -282,12 +282,8 @@ TEST(SmoothCut, SplitMesh)
   mesh->SetPoints(points);
   for (const int side : { 0, 1 })
   {
-    vtkNew<vtkLatticeTetrahedraSource> source;
-    source->SetNumberOfNodes(3, 3, 3);
-    source->EqualSpacingOff();
-    source->SetBounds(side ? planeX : -3.0, side ? 14.0 : planeX, -1, 11, 0, 10);
-    source->Update();
-    vtkUnstructuredGrid* half = source->GetOutput();
+    const auto half = MakeTetrahedra(
+      { { side ? planeX : -3.0, side ? 14.0 : planeX, -1.0, 11.0, 0.0, 10.0 } }, { { 3, 3, 3 } });
     const vtkIdType first = points->GetNumberOfPoints();
     for (vtkIdType id = 0; id < half->GetNumberOfPoints(); ++id)
     {

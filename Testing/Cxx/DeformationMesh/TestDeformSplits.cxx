@@ -27,20 +27,15 @@ public:
   Block(const std::array<int, 3>& dimensions, double voxelsPerEdge)
     : Volume(MakeImage({ { 0, dimensions[0] - 1, 0, dimensions[1] - 1, 0, dimensions[2] - 1 } },
         glm::dvec3(1.0, 0.5, 2.0)))
-    , Mesh(vtkSmartPointer<vtkUnstructuredGrid>::New())
     , Middle(0.5 * dimensions[0] - 0.5)
   {
     AddScalars<short>(
       this->Volume, "value", [](const glm::dvec3& p) { return 50.0 + 10.0 * p.x + p.y; });
-    vtkNew<vtkLatticeTetrahedraSource> source;
     const int cells = 2 * static_cast<int>(0.5 * dimensions[0] / voxelsPerEdge + 1.0);
-    source->SetNumberOfNodes(cells + 1, 5, 4);
-    source->EqualSpacingOff();
-    source->SetBounds(this->Middle - 0.5 * cells * voxelsPerEdge,
-      this->Middle + 0.5 * cells * voxelsPerEdge, -0.5, 0.5 * dimensions[1], -1.0,
-      2.0 * dimensions[2]);
-    source->Update();
-    this->Mesh->DeepCopy(source->GetOutput());
+    this->Mesh = MakeTetrahedra(
+      { { this->Middle - 0.5 * cells * voxelsPerEdge, this->Middle + 0.5 * cells * voxelsPerEdge,
+        -0.5, 0.5 * dimensions[1], -1.0, 2.0 * dimensions[2] } },
+      { { cells + 1, 5, 4 } });
     SetDisplacements(this->Mesh, Shift(0.0, 0.0, 0.0));
   }
 

@@ -48,13 +48,7 @@ vtkSmartPointer<vtkImageData> MakeNoise()
 /// A lattice over a cube from -1 to 1 whose nodes are moved by a map. Points have double precision.
 vtkSmartPointer<vtkUnstructuredGrid> MakeBody(const std::array<int, 3>& nodes, const WorldMap& map)
 {
-  vtkNew<vtkLatticeTetrahedraSource> source;
-  source->SetNumberOfNodes(nodes[0], nodes[1], nodes[2]);
-  source->EqualSpacingOff();
-  source->SetBounds(-1.0, 1.0, -1.0, 1.0, -1.0, 1.0);
-  source->Update();
-  auto body = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  body->ShallowCopy(source->GetOutput());
+  auto body = MakeTetrahedra({ { -1.0, 1.0, -1.0, 1.0, -1.0, 1.0 } }, nodes);
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   for (vtkIdType id = 0; id < body->GetNumberOfPoints(); ++id)

@@ -142,13 +142,7 @@ glm::dvec3 Bend(const glm::dvec3& p)
 // A lattice over a cube whose inner nodes are moved at random.
 vtkSmartPointer<vtkUnstructuredGrid> MakeLattice(double side, int nodes, double jitter)
 {
-  vtkNew<vtkLatticeTetrahedraSource> source;
-  source->SetNumberOfNodes(nodes, nodes, nodes);
-  source->EqualSpacingOff();
-  source->SetBounds(0.0, side, 0.0, side, 0.0, side);
-  source->Update();
-  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  mesh->DeepCopy(source->GetOutput());
+  auto mesh = MakeTetrahedra({ { 0.0, side, 0.0, side, 0.0, side } }, { { nodes, nodes, nodes } });
   std::mt19937 random(5);
   std::uniform_real_distribution<double> between(-jitter, jitter);
   MovePoints(mesh,
@@ -890,13 +884,8 @@ void CheckFolds(double amplitude)
   EXPECT_TRUE(amplitude < 0.0 || outside > 20);
 
   // A mesh with the same fold.
-  vtkNew<vtkLatticeTetrahedraSource> source;
-  source->SetNumberOfNodes(points, 3, 3);
-  source->EqualSpacingOff();
-  source->SetBounds(0.0, (points - 1) * step, 0.0, 4.0, 0.0, 4.0);
-  source->Update();
-  vtkNew<vtkUnstructuredGrid> mesh;
-  mesh->DeepCopy(source->GetOutput());
+  const auto mesh =
+    MakeTetrahedra({ { 0.0, (points - 1) * step, 0.0, 4.0, 0.0, 4.0 } }, { { points, 3, 3 } });
   mesh->GetPointData()->SetVectors(vectors);
   subject.Filter->SetDeformationData(mesh);
   found = subject.GetPositions();

@@ -31,13 +31,8 @@ namespace
 vtkSmartPointer<vtkUnstructuredGrid> MakeBox(
   const glm::dvec3& min, const glm::dvec3& max, const glm::ivec3& nodes = glm::ivec3(4, 3, 3))
 {
-  vtkNew<vtkLatticeTetrahedraSource> source;
-  source->SetNumberOfNodes(nodes.x, nodes.y, nodes.z);
-  source->EqualSpacingOff();
-  source->SetBounds(min.x, max.x, min.y, max.y, min.z, max.z);
-  source->Update();
-  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  mesh->DeepCopy(source->GetOutput());
+  auto mesh = MakeTetrahedra(
+    { { min.x, max.x, min.y, max.y, min.z, max.z } }, { { nodes.x, nodes.y, nodes.z } });
   SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
   return mesh;
 }

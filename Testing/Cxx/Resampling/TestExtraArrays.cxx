@@ -286,12 +286,7 @@ TEST(ExtraArrays, Kept)
   const auto volume = MakeImage({ { 0, 49, 0, 39, 0, 35 } });
   AddScalars<float>(volume, "dose", [](const glm::dvec3&) { return 2.0; });
   AddScalars<double>(volume, "activity", [](const glm::dvec3& p) { return 5.0 + 0.1 * p.x; });
-  vtkNew<vtkLatticeTetrahedraSource> source;
-  source->SetNumberOfNodes(4, 4, 4);
-  source->EqualSpacingOff();
-  source->SetBounds(18.2, 29.7, 15.1, 24.4, 13.3, 22.8);
-  source->Update();
-  vtkUnstructuredGrid* const mesh = source->GetOutput();
+  const auto mesh = MakeTetrahedra({ { 18.2, 29.7, 15.1, 24.4, 13.3, 22.8 } }, { { 4, 4, 4 } });
   SetDisplacements(mesh, Shift(2.5, 0.0, 0.0));
   const auto field =
     MakeImage({ { 0, 1, 0, 1, 0, 1 } }, glm::dvec3(10.0), glm::dvec3(18.0, 15.0, 13.0));
@@ -468,12 +463,7 @@ TEST(ExtraArrays, FoldCounts)
   field->CopyStructure(volume);
   SetDisplacements(field, [&](const glm::dvec3& p) { return glm::dvec3(map(p.x), p.y, p.z); });
   // A mesh with the same displacements, whose nodes are between voxels.
-  vtkNew<vtkLatticeTetrahedraSource> source;
-  source->SetNumberOfNodes(62, 2, 2);
-  source->EqualSpacingOff();
-  source->SetBounds(-7.5, 53.5, 2.0, 16.0, 10.0, 23.0);
-  source->Update();
-  vtkUnstructuredGrid* const mesh = source->GetOutput();
+  const auto mesh = MakeTetrahedra({ { -7.5, 53.5, 2.0, 16.0, 10.0, 23.0 } }, { { 62, 2, 2 } });
   SetDisplacements(mesh, [&](const glm::dvec3& p) { return glm::dvec3(map(p.x), p.y, p.z); });
   for (const bool isCubic : { false, true })
   {
