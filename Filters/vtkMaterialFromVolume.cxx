@@ -220,8 +220,9 @@ void vtkMaterialFromVolume::Execute(
   volume.Ghosts = ghosts.Values;
 
   const deformvolume::GridTetrahedra read = deformvolume::ReadTetrahedra(mesh, true);
-  const std::vector<glm::dvec3> points =
-    deformvolume::ReadPoints({ mesh }, "mesh on input port 0", read.Tetrahedra);
+  const std::vector<glm::dvec3> points = mesh->GetNumberOfPoints() > 0
+    ? deformvolume::ReadPoints({ mesh }, "mesh on input port 0", read.Tetrahedra)
+    : std::vector<glm::dvec3>();
   deformvolume::ProgressReport progress(this);
   const deformvolume::MaterialMeans means = deformvolume::FindMaterialMeans(
     volume, points, read.Tetrahedra, [&](double done) { return progress.Report(done); });

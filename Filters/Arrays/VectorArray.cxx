@@ -25,7 +25,7 @@ namespace deformvolume
 namespace
 {
 
-constexpr vtkIdType BLOCK = VectorsAtATime; // tuples that are read at a time
+constexpr vtkIdType BLOCK = 512; // tuples that are read at a time
 constexpr vtkIdType NONE = std::numeric_limits<vtkIdType>::max();
 
 // The blocks of an array that were not written since the last reading, according to the log of the

@@ -16,9 +16,6 @@ class vtkDataSet;
 namespace deformvolume
 {
 
-/// The largest number of vectors that a VectorTaker receives at a time.
-constexpr vtkIdType VectorsAtATime = 512;
-
 /// Receives the vectors with the indices first to first + count - 1. Called in parallel.
 using VectorTaker =
   std::function<void(vtkIdType first, const glm::dvec3* vectors, vtkIdType count)>;

@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <functional>
 #include <limits>
 
 namespace deformvolume
@@ -47,7 +46,7 @@ std::pair<std::size_t, vtkIdType> FindNode(const MeshParts& parts, vtkIdType nod
 
 void MarkMissing(vtkIdType first, vtkIdType count, const VectorTaker& take, NodeFaults& faults)
 {
-  const std::array<glm::dvec3, VectorsAtATime> zeros{};
+  const std::array<glm::dvec3, 512> zeros{};
   for (vtkIdType done = 0; done < count;)
   {
     const vtkIdType some = std::min<vtkIdType>(zeros.size(), count - done);
@@ -59,48 +58,6 @@ void MarkMissing(vtkIdType first, vtkIdType count, const VectorTaker& take, Node
     faults.Mark(node, NodeFaults::Missing);
   }
 }
-
-// Copies points of a mesh, whose indices are counted over all parts.
-class PointsOfParts
-{
-public:
-  explicit PointsOfParts(const MeshParts& parts)
-  {
-    vtkIdType first = 0;
-    for (vtkUnstructuredGrid* grid : parts)
-    {
-      const vtkIdType count = grid->GetNumberOfPoints();
-      if (count > 0)
-      {
-        this->Parts.push_back({ first, count, MakeVectorCopier(SelectPoints(grid)) });
-      }
-      first += count;
-    }
-  }
-
-  // Called by many threads.
-  void Copy(vtkIdType first, vtkIdType count, glm::dvec3* points) const
-  {
-    for (const Part& part : this->Parts)
-    {
-      const vtkIdType begin = std::max(first, part.First);
-      const vtkIdType end = std::min(first + count, part.First + part.Count);
-      if (begin < end)
-      {
-        part.Copy(begin - part.First, end - begin, points + (begin - first));
-      }
-    }
-  }
-
-private:
-  struct Part
-  {
-    vtkIdType First;
-    vtkIdType Count;
-    VectorCopier Copy;
-  };
-  std::vector<Part> Parts;
-};
 
 } // namespace
 
@@ -158,9 +115,20 @@ std::vector<glm::dvec3> ReadPoints(
   std::vector<glm::dvec3> points(GetNumberOfNodes(parts));
   NodeFaults faults;
   faults.Resize(points.size());
-  ReadPointVectors(parts, SelectPoints, faults,
-    [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
-    { std::copy_n(vectors, count, points.begin() + first); });
+  glm::dvec3* next = points.data();
+  for (vtkUnstructuredGrid* grid : parts)
+  {
+    if (grid->GetNumberOfPoints() > 0)
+    {
+      ReadVectors(
+        grid->GetPoints()->GetData(),
+        [next](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
+        { std::copy_n(vectors, count, next + first); },
+        "Point", name, nullptr,
+        [&](vtkIdType point) { faults.Mark(next - points.data() + point, NodeFaults::NotFinite); });
+      next += grid->GetNumberOfPoints();
+    }
+  }
   CheckPoints(parts, name, faults, tetrahedra);
   return points;
 }
@@ -239,33 +207,11 @@ void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector, Nod
         array,
         [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
         { take(next + first, vectors, count); },
-        "Vector", "", memories ? &last[part] : nullptr,
+        "Displacement", "", memories ? &last[part] : nullptr,
         [&](vtkIdType point) { faults.Mark(next + point, NodeFaults::NotFinite); });
     }
     next += points;
   }
-}
-
-vtkDataArray* SelectPoints(vtkDataSet* grid)
-{
-  return static_cast<vtkUnstructuredGrid*>(grid)->GetPoints()->GetData();
-}
-
-void ReadPointDifferences(const MeshParts& shape, const MeshParts& rest, NodeFaults& faults,
-  const VectorTaker& take, std::vector<VectorMemory>* memories)
-{
-  const PointsOfParts starts(rest);
-  ReadPointVectors(
-    shape, SelectPoints, faults,
-    [&](vtkIdType first, const glm::dvec3* points, vtkIdType count)
-    {
-      std::array<glm::dvec3, VectorsAtATime> moves;
-      starts.Copy(first, count, moves.data());
-      std::transform(
-        points, points + count, moves.begin(), moves.begin(), std::minus<glm::dvec3>());
-      take(first, moves.data(), count);
-    },
-    memories);
 }
 
 void CheckPointVectors(const MeshParts& parts, const ArraySelector& selector,

@@ -78,15 +78,6 @@ bool HaveVectors(vtkDataSet* dataSet, vtkDataArray* vectors);
 void ReadPointVectors(const MeshParts& parts, const ArraySelector& selector, NodeFaults& faults,
   const VectorTaker& take, std::vector<VectorMemory>* memories = nullptr);
 
-/// Selects the points of a grid, so that ReadPointVectors() reads them.
-vtkDataArray* SelectPoints(vtkDataSet* grid);
-
-/// Reads the differences between the points of `shape` and those of `rest`, part by part. Points of
-/// `shape` that are not finite are marked in faults. memories: the last reading of each part, with
-/// the same points of `rest`.
-void ReadPointDifferences(const MeshParts& shape, const MeshParts& rest, NodeFaults& faults,
-  const VectorTaker& take, std::vector<VectorMemory>* memories = nullptr);
-
 /// Throws an Error if tetrahedra use a node without a vector, or with a vector that is not finite.
 /// The caller handles nodes that move too far.
 void CheckPointVectors(const MeshParts& parts, const ArraySelector& selector,

@@ -7,6 +7,7 @@
 #include "MeshCells.h"
 #include "ParallelFor.h"
 
+#include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
@@ -177,19 +178,28 @@ bool RestMesh::HavePointsChanged(const MeshParts& rest, const DeformationSource&
   }
   const glm::dmat4 transform = source.Volume.GetWorldToIndex();
   std::atomic<bool> have{ false };
-  NodeFaults faults; // a point that is not finite was read as zeros
-  faults.Resize(GetNumberOfNodes(rest));
-  ReadPointVectors(rest, SelectPoints, faults,
-    [&](vtkIdType first, const glm::dvec3* points, vtkIdType count)
+  const glm::dvec3* last = this->Points.data();
+  for (vtkUnstructuredGrid* grid : rest)
+  {
+    if (grid->GetNumberOfPoints() == 0)
     {
-      for (vtkIdType i = 0; i < count; ++i)
+      continue;
+    }
+    ReadVectors(
+      grid->GetPoints()->GetData(),
+      [&](vtkIdType begin, const glm::dvec3* points, vtkIdType count)
       {
-        if (glm::dvec3(transform * glm::dvec4(points[i], 1.0)) != this->Points[first + i])
+        for (vtkIdType i = 0; i < count; ++i)
         {
-          have.store(true, std::memory_order_relaxed);
+          if (glm::dvec3(transform * glm::dvec4(points[i], 1.0)) != last[begin + i])
+          {
+            have.store(true, std::memory_order_relaxed);
+          }
         }
-      }
-    });
+      },
+      "Point", "", nullptr, [](vtkIdType) {}); // a point that is not finite was read as zeros
+    last += grid->GetNumberOfPoints();
+  }
   return have;
 }
 
@@ -267,26 +277,9 @@ bool RestMesh::ReadPoints(
   this->Points.resize(std::max(sizeBefore, GetNumberOfNodes(rest)));
   this->PointFaults.Resize(GetNumberOfNodes(rest));
   std::atomic<bool> kept{ true };
-  const glm::dmat4 transform = source.Volume.GetWorldToIndex();
   try
   {
-    ReadPointVectors(
-      rest, SelectPoints, this->PointFaults,
-      [&](vtkIdType first, const glm::dvec3* points, vtkIdType count)
-      {
-        this->PointFaults.Clear(first, count);
-        for (vtkIdType i = 0; i < count; ++i)
-        {
-          const auto node = static_cast<std::size_t>(first + i);
-          const glm::dvec3 point(transform * glm::dvec4(points[i], 1.0));
-          if (node < before && point != this->Points[node])
-          {
-            kept.store(false, std::memory_order_relaxed);
-          }
-          this->Points[node] = point;
-        }
-      },
-      &this->PointMemories);
+    this->ReadMovedPoints(rest, source, before, kept);
   }
   catch (...)
   {
@@ -299,6 +292,46 @@ bool RestMesh::ReadPoints(
   this->PointsStamp = stamp;
   this->Volume = source.Volume;
   return true;
+}
+
+void RestMesh::ReadMovedPoints(const MeshParts& rest, const DeformationSource& source,
+  std::size_t before, std::atomic<bool>& kept)
+{
+  const glm::dmat4 transform = source.Volume.GetWorldToIndex();
+  this->PointMemories.resize(rest.size());
+  vtkIdType first = 0;
+  for (std::size_t part = 0; part < rest.size(); ++part)
+  {
+    VectorMemory& memory = this->PointMemories[part];
+    const vtkIdType count = rest[part]->GetNumberOfPoints();
+    if (count == 0 || memory.FirstNumber != first)
+    {
+      memory = VectorMemory();
+      memory.FirstNumber = first;
+    }
+    if (count > 0)
+    {
+      ReadVectors(
+        rest[part]->GetPoints()->GetData(),
+        [&](vtkIdType begin, const glm::dvec3* points, vtkIdType some)
+        {
+          this->PointFaults.Clear(first + begin, some);
+          for (vtkIdType i = 0; i < some; ++i)
+          {
+            const auto node = static_cast<std::size_t>(first + begin + i);
+            const glm::dvec3 point(transform * glm::dvec4(points[i], 1.0));
+            if (node < before && point != this->Points[node])
+            {
+              kept.store(false, std::memory_order_relaxed);
+            }
+            this->Points[node] = point;
+          }
+        },
+        "Point", "", &memory,
+        [&](vtkIdType point) { this->PointFaults.Mark(first + point, NodeFaults::NotFinite); });
+    }
+    first += count;
+  }
 }
 
 bool RestMesh::HaveSameShape(const CellReading& cells) const

@@ -12,6 +12,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -85,6 +86,9 @@ private:
   bool HaveSameShape(const CellReading& cells) const;
   /// before: number of nodes before. Returns false if nothing had to be read.
   bool ReadPoints(const MeshParts& rest, const DeformationSource& source, std::size_t before);
+  /// before: number of nodes before. kept: set to false if one of these nodes has moved.
+  void ReadMovedPoints(const MeshParts& rest, const DeformationSource& source, std::size_t before,
+    std::atomic<bool>& kept);
   /// nodes: number of nodes of the grids.
   void UpdateDerivedPoints(std::size_t nodes);
   void SetConnectivity(Changes&& changes);

@@ -3,6 +3,7 @@
 
 #include "Error.h"
 #include "ParallelFor.h"
+#include "PointDifferences.h"
 #include "VectorArray.h"
 #include "VectorConversion.h"
 
@@ -87,7 +88,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
     {
       if (ofPoints)
       {
-        ReadPointDifferences(shape, rest, this->Faults, take, &this->Memories);
+        ReadPointDifferences(shape, rest, take, this->Memories, this->Faults);
       }
       else
       {

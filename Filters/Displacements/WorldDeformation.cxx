@@ -5,6 +5,7 @@
 #include "FieldReading.h"
 #include "NodeFaults.h"
 #include "PipelineGeometry.h"
+#include "PointDifferences.h"
 #include "VectorArray.h"
 
 #include "vtkDataArray.h"
@@ -73,7 +74,8 @@ void WorldDeformation::ReadMesh(const DeformationSource& source)
   const std::vector<Tetrahedron>& tetrahedra = this->Mesh.GetTetrahedra();
   if (source.Rest)
   {
-    ReadPointDifferences(shape, rest, faults, take);
+    std::vector<VectorMemory> memories;
+    ReadPointDifferences(shape, rest, take, memories, faults);
     CheckPoints(shape, MESH_NAME, faults, tetrahedra);
   }
   else
