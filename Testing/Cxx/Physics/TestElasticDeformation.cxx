@@ -91,10 +91,10 @@ TYPED_TEST(ElasticModels, Misuse)
       mesh->GetCellData()->AddArray(array);
     };
     EXPECT_TRUE(HasPart(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, 1.0, 2); }), name));
-    EXPECT_TRUE(
-      HasPart(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, -1.0, 1); }), "tetrahedron 0"));
-    EXPECT_TRUE(
-      HasPart(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, nan, 1); }), "tetrahedron 0"));
+    EXPECT_TRUE(HasPart(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, -1.0, 1); }),
+      "tetrahedron with the points 0, "));
+    EXPECT_TRUE(HasPart(tryMesh([&](vtkUnstructuredGrid* mesh) { add(mesh, nan, 1); }),
+      "tetrahedron with the points 0, "));
   }
   simulated.Filter->SetYoungModulus(0.0);
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "Young modulus"));
