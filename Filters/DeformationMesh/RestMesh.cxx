@@ -94,6 +94,7 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   std::vector<CellMemory> cellMemories = GetCellMemories(rest);
   const std::size_t nodes = GetNumberOfNodes(rest);
   const std::size_t nodesBefore = this->Points.size() - this->Derived.GetCount();
+  const bool hasFailed = this->ShapeIsOld;
   this->RestCells = this->ShapeCells = MeshStamp(); // equal no other stamps if a call below throws
   this->RestCellMemories.clear();
   // The indices of derived nodes follow those of all other nodes.
@@ -124,7 +125,8 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   {
     this->SetConnectivity(std::move(*cells.Differences));
   }
-  if (nodes < nodesBefore && !AreNodes(this->Tetrahedra, this->Points.size()))
+  // After a failure the points that tetrahedra use may have been removed already.
+  if ((nodes < nodesBefore || hasFailed) && !AreNodes(this->Tetrahedra, this->Points.size()))
   {
     this->ShapeIsOld = true;
     deformvolume::ReadCells(rest, rest, source.Derived); // throws an Error that says what is wrong
