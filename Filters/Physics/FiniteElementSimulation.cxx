@@ -61,8 +61,7 @@ void FiniteElementSimulation::Warn(const EquilibriumReport& last)
   if (now.NumberOfFrozenPieces != last.NumberOfFrozenPieces && now.NumberOfFrozenPieces > 0)
   {
     text << now.NumberOfFrozenPieces
-         << " pieces of the mesh are not held. The tetrahedron with the "
-            "points "
+         << " pieces of the mesh are not held. The tetrahedron with the points "
          << ListNodes(now.FrozenNodes)
          << " is in one of these pieces. A piece consists of tetrahedra that are connected by "
             "their faces. It is held by three nodes that do not lie on one line and are fixed, "

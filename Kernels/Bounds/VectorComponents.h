@@ -41,6 +41,7 @@ private:
   std::array<float, Width> Greatest;
   std::array<int, Width> AreFinite;
 };
+
 /// Computes the ranges of the components. values: `count` numbers, three per vector.
 DEFORMVOLUME_EXPORT VectorComponents FindComponents(const float* values, std::size_t count);
 

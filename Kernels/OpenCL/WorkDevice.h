@@ -19,7 +19,7 @@ public:
   /// Set the device to that of a context. The caller must release what it holds on the previous
   /// device.
   void Use(OpenCLContext& context);
-  /// Set the device of a request (FindDevice()), and returns its name. release: called if the
+  /// Sets the device of a request (FindDevice()), and returns its name. release: called if the
   /// device changes, to release what the caller holds on the previous device.
   const std::string& Choose(const std::string& request, const std::function<void()>& release);
   bool Uses(const OpenCLContext& context) const { return this->Context == &context; }

@@ -25,21 +25,6 @@ namespace
 constexpr unsigned char GuardByte = 0xA5;
 constexpr std::size_t GuardBytes = 64;
 
-template <typename Function>
-void ForEachVoxel(const Extent& extent, Function&& function)
-{
-  for (int z = extent[4]; z <= extent[5]; ++z)
-  {
-    for (int y = extent[2]; y <= extent[3]; ++y)
-    {
-      for (int x = extent[0]; x <= extent[1]; ++x)
-      {
-        function(x, y, z);
-      }
-    }
-  }
-}
-
 reference::Position GetRestPosition(const VoxelGrid& voxelGrid, int x, int y, int z)
 {
   const std::array<int, 3> index{ { x, y, z } };
@@ -220,7 +205,7 @@ DeformerCase MakeCase(const Extent& extent, const OutputMap& toOutput,
   std::array<std::int64_t, 3> high{};
   low.fill(std::numeric_limits<std::int64_t>::max());
   high.fill(std::numeric_limits<std::int64_t>::lowest());
-  ForEachVoxel(extent,
+  ForEachPoint(extent,
     [&](int x, int y, int z)
     {
       const glm::dvec3 moved = deformation(glm::dvec3(x, y, z));
@@ -311,7 +296,7 @@ reference::Result ResampleByReference(const DeformerCase& deformerCase)
   mesh.Displacements = deformerCase.Displacements;
   mesh.IsMirrored = deformerCase.VoxelGrid.ToOutput.GetDeterminant() < 0.0;
   std::size_t voxel = 0;
-  ForEachVoxel(mesh.Voxels,
+  ForEachPoint(mesh.Voxels,
     [&](int x, int y, int z)
     {
       reference::Position position = GetRestPosition(deformerCase.VoxelGrid, x, y, z);

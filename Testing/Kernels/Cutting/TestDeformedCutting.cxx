@@ -251,12 +251,12 @@ TEST(DeformedCutting, BoxesHoldTheirVertices)
     }
     positions.SetDisplacements(others.data());
     CheckBoxes(positions);
-    const DeformedMeshPositions anew(vertices, vertices, mapping, tetrahedra, others.data());
-    for (std::size_t brick = 0; brick < anew.GetBricks().GetNumberOfBricks(); ++brick)
+    const DeformedMeshPositions made(vertices, vertices, mapping, tetrahedra, others.data());
+    for (std::size_t brick = 0; brick < made.GetBricks().GetNumberOfBricks(); ++brick)
     {
-      EXPECT_EQ(FindPositions(positions, brick).Points, FindPositions(anew, brick).Points);
-      EXPECT_EQ(positions.GetBox(brick).Min, anew.GetBox(brick).Min);
-      EXPECT_EQ(positions.GetBox(brick).Max, anew.GetBox(brick).Max);
+      EXPECT_EQ(FindPositions(positions, brick).Points, FindPositions(made, brick).Points);
+      EXPECT_EQ(positions.GetBox(brick).Min, made.GetBox(brick).Min);
+      EXPECT_EQ(positions.GetBox(brick).Max, made.GetBox(brick).Max);
     }
   }
 }
@@ -352,12 +352,12 @@ TEST(DeformedCutting, BoxesFollowChanges)
       begin = end + random() % 5000;
     }
     positions.SetField(field, round % 20 == 19 ? nullptr : &changes);
-    const DeformedFieldPositions anew(vertices, field);
-    for (std::size_t brick = 0; brick < anew.GetBricks().GetNumberOfBricks(); ++brick)
+    const DeformedFieldPositions made(vertices, field);
+    for (std::size_t brick = 0; brick < made.GetBricks().GetNumberOfBricks(); ++brick)
     {
-      ASSERT_EQ(positions.GetBox(brick).Min, anew.GetBox(brick).Min);
-      ASSERT_EQ(positions.GetBox(brick).Max, anew.GetBox(brick).Max);
+      ASSERT_EQ(positions.GetBox(brick).Min, made.GetBox(brick).Min);
+      ASSERT_EQ(positions.GetBox(brick).Max, made.GetBox(brick).Max);
     }
-    ASSERT_EQ(positions.GetBox().Min, anew.GetBox().Min);
+    ASSERT_EQ(positions.GetBox().Min, made.GetBox().Min);
   }
 }

@@ -37,21 +37,6 @@ std::int64_t GetPlace(const Extent& extent, int x, int y, int z)
     (x - extent[0]);
 }
 
-template <typename T>
-void ForEachVoxel(const Extent& extent, T&& body)
-{
-  for (int z = extent[4]; z <= extent[5]; ++z)
-  {
-    for (int y = extent[2]; y <= extent[3]; ++y)
-    {
-      for (int x = extent[0]; x <= extent[1]; ++x)
-      {
-        body(x, y, z);
-      }
-    }
-  }
-}
-
 DeformerCase MakeJittered(double amplitude = 0.15)
 {
   return MakeCase(Volume, { { 1, 1, 1 } },
@@ -154,7 +139,7 @@ TEST(Cubic, NotANumberStaysWithinItsCells)
   const Deformed deformed = RunCubic(made, usual.Get());
   std::int64_t wrong = 0;
   std::int64_t voxel = 0;
-  ForEachVoxel(made.Output,
+  ForEachPoint(made.Output,
     [&](int x, int y, int z)
     {
       // Two voxels on each side.
@@ -179,7 +164,7 @@ TEST(Cubic, QuadraticsAreReproduced)
     const DeformerCase made =
       MakeCase(Volume, { { 1, 1, 1 } }, [&](const glm::dvec3& index) { return sign * Map(index); });
     std::vector<double> values;
-    ForEachVoxel(
+    ForEachPoint(
       Volume, [&](int x, int y, int z) { values.push_back(polynomial(glm::dvec3(x, y, z))); });
     const std::vector<VolumeArray> arrays{ MakeArray(values) };
     const Deformed cubic = RunCubic(made, arrays);
@@ -189,7 +174,7 @@ TEST(Cubic, QuadraticsAreReproduced)
     double largestOfLinear = 0.0;
     std::int64_t compared = 0;
     std::int64_t voxel = -1;
-    ForEachVoxel(made.Output,
+    ForEachPoint(made.Output,
       [&](int x, int y, int z)
       {
         ++voxel;
@@ -484,7 +469,7 @@ TEST(Cubic, PartsEqualTheWhole)
   const Deformed some = RunCubic(part, values.Get());
   std::int64_t wrong = 0;
   std::int64_t voxel = 0;
-  ForEachVoxel(part.Output,
+  ForEachPoint(part.Output,
     [&](int x, int y, int z)
     {
       const std::int64_t at = GetPlace(whole.Output, x, y, z);
@@ -530,7 +515,7 @@ TEST(Cubic, TightMeshes)
   std::int64_t beside = 0; // in cells that the boundary does not cross
   std::int64_t wrong = 0;
   std::int64_t voxel = -1;
-  ForEachVoxel(mesh.Output,
+  ForEachPoint(mesh.Output,
     [&](int x, int y, int z)
     {
       const glm::dvec3 rest = back * (glm::dvec3(x, y, z) - shift);
