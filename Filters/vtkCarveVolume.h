@@ -143,9 +143,9 @@ public:
   /**
    * Move a spherical tool with the radius ToolRadius to a position in world coordinates. The tool
    * carves at its positions, and the space that it sweeps between them. An update carves only along
-   * positions that are new since the last update, and takes time only for the cells there. If the
-   * positions do not continue those of the last update, a new stroke begins. ClearToolPositions()
-   * lifts the tool. Carved tetrahedra remain switched off.
+   * positions that are new since the last update, and takes time only for the cells there.
+   * ClearToolPositions() lifts the tool, and the next position begins a new stroke. Carved
+   * tetrahedra remain switched off.
    */
   void AddToolPosition(double x, double y, double z);
 

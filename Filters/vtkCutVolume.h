@@ -109,9 +109,8 @@ public:
   /**
    * Move a cutting tool, a straight edge with two ends, to a position in world coordinates. It cuts
    * along the area that it sweeps from position to position (two triangles). An update cuts only
-   * between new positions, and takes time only for the cells there. If the positions do not
-   * continue those of the last update, a new stroke begins, whose first position cuts nothing.
-   * ClearToolPositions() lifts the tool. Cuts remain.
+   * between new positions, and takes time only for the cells there. ClearToolPositions() lifts
+   * the tool: the next position begins a new stroke, and cuts nothing. Cuts remain.
    */
   void AddToolPosition(double x0, double y0, double z0, double x1, double y1, double z1);
 

@@ -14,7 +14,8 @@
  * three. Cells of fewer than three dimensions are ignored, and so are cells that vtkGhostType marks
  * as hidden or duplicate, and those with a point that it hides or whose vtkValidPointMask is 0.
  * These arrays are used, all of them optional:
- * - the point array "Fixed", one component: nodes with a value other than 0 are fixed;
+ * - the point array "Fixed", one component: nodes with a value other than 0 are fixed, with finite
+ *   elements at their rest position, with springs where they are when they become fixed;
  * - the point array "PrescribedDisplacement", three components, in the units of the mesh:
  *   displacements of the fixed nodes. Values at other nodes are not used;
  * - the point array "SlidingNormal", three components: nodes with a vector other than 0 slide

@@ -136,7 +136,17 @@ void vtkVolumeEditAlgorithm::ClearToolPositions()
 {
   if (this->Edits->Tool.GetNumberOfPositions() > 0)
   {
-    this->Edits->Tool.Clear();
+    this->Modified();
+  }
+  this->Edits->Tool.Clear();
+}
+
+//------------------------------------------------------------------------------
+void vtkVolumeEditAlgorithm::ReplaceToolPositions()
+{
+  if (this->Edits->Tool.GetNumberOfPositions() > 0)
+  {
+    this->Edits->Tool.Replace();
     this->Modified();
   }
 }

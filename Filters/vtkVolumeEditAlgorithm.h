@@ -91,10 +91,12 @@ public:
 
   ///@{
   /**
-   * Remove the tool positions, so that the next positions begin a new stroke. Edits of the tool
-   * remain.
+   * Remove the tool positions. Edits of the tool remain. After ClearToolPositions() the next
+   * positions begin a new stroke. ReplaceToolPositions() is for user interfaces that give the whole
+   * list again: positions that continue those of the last update continue its stroke.
    */
   void ClearToolPositions();
+  void ReplaceToolPositions();
   int GetNumberOfToolPositions();
   ///@}
 

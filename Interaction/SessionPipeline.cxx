@@ -422,9 +422,7 @@ void SessionPipeline::Carve(const SessionEvent& event)
   const bool isNew = event.Numbers[0] != 0.0 || !this->IsStroke;
   if (isNew)
   {
-    // After an update without tool positions, the filter carves at the last position once more.
     this->CarveFilter->ClearToolPositions();
-    this->Update(this->CarveFilter);
   }
   if (this->Model != Session::NONE)
   {

@@ -210,7 +210,8 @@ public:
   ///@{
   /**
    * Set/Get the width of the border of the output around the volume at rest, in voxels, for tissue
-   * that is pulled out. Default 8, 0 to 1000.
+   * that is pulled out. The next output uses it: a change alone makes no output. Default 8, 0 to
+   * 1000.
    */
   void SetPadding(int voxels);
   int GetPadding();
@@ -220,7 +221,8 @@ public:
   /**
    * Set/Get the value of uncovered voxels of the output, in all arrays (BackgroundValue of
    * vtkDeformVolumeFilter). SetInputs() sets it to the minimum of the first component of the
-   * scalars, which is air in CT, but to 0 if the minimum is greater than 0.
+   * scalars, which is air in CT, but to 0 if the minimum is greater than 0. The next output uses a
+   * new value.
    */
   void SetBackgroundValue(double value);
   double GetBackgroundValue();

@@ -3,6 +3,7 @@
 
 #include "Error.h"
 #include "IndexBounds.h"
+#include "MaskArray.h"
 
 #include "vtkCellArray.h"
 #include "vtkNew.h"
@@ -24,6 +25,37 @@ void ForEachCell(vtkCellArray* cells, Function&& function)
   {
     function(size, ids);
   }
+}
+
+// Returns the cells of one kind that are not hidden. first: the number of its first cell in `data`.
+vtkSmartPointer<vtkCellArray> FindShown(
+  vtkCellArray* cells, vtkIdType first, const SkippedCells& skipped)
+{
+  auto shown = vtkSmartPointer<vtkCellArray>::New();
+  ForEachCell(cells,
+    [&](vtkIdType size, const vtkIdType* ids)
+    {
+      if (!skipped.Contain(first++) && !skipped.ContainPointOf(ids, size))
+      {
+        shown->InsertNextCell(size, ids);
+      }
+    });
+  return shown;
+}
+
+// Returns the lines, polygons and strips that are not hidden.
+vtkSmartPointer<vtkPolyData> FindShown(vtkPolyData* data, const std::string& name)
+{
+  const SkippedCells skipped(data, name);
+  auto shown = vtkSmartPointer<vtkPolyData>::New();
+  shown->SetPoints(data->GetPoints());
+  vtkIdType first = data->GetNumberOfVerts();
+  shown->SetLines(FindShown(data->GetLines(), first, skipped));
+  first += data->GetNumberOfLines();
+  shown->SetPolys(FindShown(data->GetPolys(), first, skipped));
+  first += data->GetNumberOfPolys();
+  shown->SetStrips(FindShown(data->GetStrips(), first, skipped));
+  return shown;
 }
 
 void CheckPoints(vtkPolyData* data, const std::string& name)
@@ -90,15 +122,13 @@ WorldSheet ReadSheet(vtkPolyData* data, const glm::dvec3& sweepVector, const std
     return sheet;
   }
   CheckPoints(data, name);
-  vtkSmartPointer<vtkPolyData> triangles = data;
-  if (!HasTrianglesOnly(data))
+  const vtkSmartPointer<vtkPolyData> shown = FindShown(data, name);
+  vtkSmartPointer<vtkPolyData> triangles = shown;
+  if (!HasTrianglesOnly(shown))
   {
-    vtkNew<vtkPolyData> faces;
-    faces->SetPoints(data->GetPoints());
-    faces->SetPolys(data->GetPolys());
-    faces->SetStrips(data->GetStrips());
     vtkNew<vtkTriangleFilter> triangulation;
-    triangulation->SetInputData(faces);
+    triangulation->PassLinesOff();
+    triangulation->SetInputData(shown);
     triangulation->Update();
     triangles = triangulation->GetOutput();
   }
@@ -112,13 +142,13 @@ WorldSheet ReadSheet(vtkPolyData* data, const glm::dvec3& sweepVector, const std
     [&](vtkIdType, const vtkIdType* ids) {
       sheet.Triangles.push_back({ { ids[0], ids[1], ids[2] } });
     });
-  if (data->GetNumberOfLines() == 0)
+  if (shown->GetNumberOfLines() == 0)
   {
     return sheet;
   }
   if (sweepVector != glm::dvec3(0.0))
   {
-    AddLines(data, sweepVector, sheet);
+    AddLines(shown, sweepVector, sheet);
   }
   else if (sheet.IsEmpty())
   {

@@ -20,7 +20,15 @@ public:
   using Position = std::array<glm::dvec3, 2>;
 
   void Add(const Position& position) { this->Positions.push_back(position); }
-  void Clear() { this->Positions.clear(); }
+  /// Removes all positions. The next ones begin a new stroke.
+  void Clear()
+  {
+    this->Positions.clear();
+    this->Done.clear();
+  }
+  /// Removes all positions. The next ones continue the last stroke if they begin with its
+  /// positions.
+  void Replace() { this->Positions.clear(); }
   std::size_t GetNumberOfPositions() const { return this->Positions.size(); }
 
   /// The positions along which the tool has to be moved: from the last position of the previous

@@ -113,6 +113,28 @@ void FindUsed(BodyMesh& mesh)
   mesh.Size = glm::distance(box.Min, box.Max);
 }
 
+// The number of nodes of a kind, and the first of them.
+struct CountedNodes
+{
+  std::size_t Number = 0;
+  std::size_t First = 0;
+
+  void Add(std::size_t node)
+  {
+    this->First = this->Number == 0 ? node : this->First;
+    ++this->Number;
+  }
+  // Throws an Error such as "3 nodes of the rest mesh slide, the first one being number 7. ".
+  void ThrowIfAny(const std::string& what, const std::string& advice) const
+  {
+    if (this->Number > 0)
+    {
+      throw Error(std::to_string(this->Number) + " nodes of the " + MESH + " " + what +
+        ", the first one being number " + std::to_string(this->First) + ". " + advice);
+    }
+  }
+};
+
 void ReadPointArrays(vtkUnstructuredGrid* grid, const BodySettings& settings, BodyMesh& mesh)
 {
   const vtkIdType points = grid->GetNumberOfPoints();
@@ -120,10 +142,19 @@ void ReadPointArrays(vtkUnstructuredGrid* grid, const BodySettings& settings, Bo
   if (fixed)
   {
     mesh.Body.Fixed.resize(mesh.Body.Points.size());
+    CountedNodes faulty;
     for (vtkIdType i = 0; i < points; ++i)
     {
-      mesh.Body.Fixed[static_cast<std::size_t>(i)] = fixed->GetComponent(i, 0) != 0.0 ? 1 : 0;
+      const double value = fixed->GetComponent(i, 0);
+      const auto node = static_cast<std::size_t>(i);
+      mesh.Body.Fixed[node] = value != 0.0 ? 1 : 0;
+      if (std::isnan(value))
+      {
+        faulty.Add(node);
+      }
     }
+    faulty.ThrowIfAny("are neither fixed nor free: their value in the point array \"Fixed\" is NaN",
+      "Set 0 for free nodes, and 1 for fixed ones.");
   }
   const auto read = [&](const char* name, double factor)
   {
@@ -147,28 +178,6 @@ void ReadPointArrays(vtkUnstructuredGrid* grid, const BodySettings& settings, Bo
   need(!mesh.Body.SlidingNormals.empty() || mesh.Body.SecondSlidingNormals.empty(),
     SlidingNormalName, SecondSlidingNormalName, "Rename the array.");
 }
-
-// The number of nodes of a kind, and the first of them.
-struct CountedNodes
-{
-  std::size_t Number = 0;
-  std::size_t First = 0;
-
-  void Add(std::size_t node)
-  {
-    this->First = this->Number == 0 ? node : this->First;
-    ++this->Number;
-  }
-  // Throws an Error such as "3 nodes of the rest mesh slide, the first one being number 7. ".
-  void ThrowIfAny(const std::string& what, const std::string& advice) const
-  {
-    if (this->Number > 0)
-    {
-      throw Error(std::to_string(this->Number) + " nodes of the " + MESH + " " + what +
-        ", the first one being number " + std::to_string(this->First) + ". " + advice);
-    }
-  }
-};
 
 // Throws an Error for arrays that mass-spring dynamics does not support: prescribed displacements
 // of fixed nodes, and sliding nodes.

@@ -251,6 +251,14 @@ void ElasticSession::Reset()
   {
     this->Simulation->Reset();
   }
+  // After a reset the body is at rest, also if cuts are removed.
+  for (AppliedCut& cut : this->Cuts)
+  {
+    for (std::vector<glm::dvec3>* vectors : { &cut.Before.Displacements, &cut.Before.Velocities })
+    {
+      std::fill(vectors->begin(), vectors->end(), glm::dvec3(0.0));
+    }
+  }
   this->Time = 0.0;
   this->HasMoved = false;
 }
@@ -375,7 +383,8 @@ vtkUnstructuredGrid* ElasticSession::GetGrid(vtkUnstructuredGrid* grid)
     return grid;
   }
   const Stamp mesh = GetMeshStamp(grid);
-  const Stamp data = GetDataStamp(grid);
+  Stamp data = GetDataStamp(grid);
+  data.push_back(this->BodyStamp.back()); // arrays may be written without a change of their times
   const bool keepsMesh =
     this->MadeGrid && mesh == this->MadeMeshStamp && this->MadeVersion == this->MeshVersion;
   if (keepsMesh && data == this->MadeDataStamp)

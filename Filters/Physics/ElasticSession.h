@@ -43,7 +43,8 @@ public:
   std::size_t GetNumberOfCuts() const { return this->Cuts.size(); }
   std::int64_t GetNumberOfSplitFaces() const;
 
-  /// Resets the body to its rest state, and the time to 0.
+  /// Resets the body to its rest state, and the time to 0. The body is also at rest after cuts that
+  /// were made before are removed.
   void Reset();
 
   bool HasBody() const { return this->Exists; }

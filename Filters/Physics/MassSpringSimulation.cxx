@@ -71,6 +71,14 @@ void MassSpringSimulation::SetBody(
   this->NumberOfNodes = body.Points.size();
   if (keepsState)
   {
+    // A node that is fixed for a while is at rest when it is freed.
+    for (std::size_t node = 0; node < body.Fixed.size(); ++node)
+    {
+      if (body.IsFixed(node))
+      {
+        std::fill_n(&velocities[3 * node], 3, 0.0F);
+      }
+    }
     this->Model.SetState(displacements, velocities);
   }
 }

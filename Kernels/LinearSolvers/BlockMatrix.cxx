@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 namespace deformvolume
@@ -98,6 +99,11 @@ BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
       pattern.Diagonal[node] =
         pattern.Rows[node] + static_cast<std::int32_t>(own - columns.begin());
       pattern.Columns.insert(pattern.Columns.end(), columns.begin(), columns.end());
+      if (pattern.Columns.size() > std::numeric_limits<std::int32_t>::max())
+      {
+        throw Error("The mesh is too large for finite elements: its stiffness matrix has more than "
+                    "2,147,483,647 blocks. Use a coarser mesh.");
+      }
       pattern.Rows[node + 1] = static_cast<std::int32_t>(pattern.Columns.size());
     });
 

@@ -98,6 +98,11 @@ void MassSpringModel::Internals::CheckSize(const ElasticBody& body)
     throw Error("The mesh has too many tetrahedra for springs: at most 357,913,925. Use a coarser "
                 "mesh.");
   }
+  if (body.Points.size() > std::numeric_limits<std::int32_t>::max() / 3)
+  {
+    throw Error(
+      "The mesh has too many nodes for springs: at most 715,827,882. Use a coarser mesh.");
+  }
   const std::uint64_t allocation = body.Tetrahedra.size() * valuesOfTetrahedron * sizeof(float);
   CheckAllocation(allocation, this->Device.GetAllocationLimit(), "The springs of the tetrahedra",
     "Use a coarser mesh");

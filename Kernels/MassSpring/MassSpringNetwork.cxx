@@ -149,12 +149,16 @@ MassSpringNetwork::MassSpringNetwork(
   const std::vector<double> volumes = GetVolumes(body);
   watch.Ask();
   this->Masses = GetNodeMasses(body, volumes);
-  glm::dvec3 least = body.Points.front();
+  // Points that no tetrahedron uses may be far away.
+  glm::dvec3 least = body.Points[static_cast<std::size_t>(body.Tetrahedra.front()[0])];
   glm::dvec3 most = least;
-  for (const glm::dvec3& point : body.Points)
+  for (std::size_t node = 0; node < body.Points.size(); ++node)
   {
-    least = glm::min(least, point);
-    most = glm::max(most, point);
+    if (this->Masses[node] > 0.0)
+    {
+      least = glm::min(least, body.Points[node]);
+      most = glm::max(most, body.Points[node]);
+    }
   }
   this->Size = glm::distance(least, most);
   const glm::dvec3 middle = 0.5 * (least + most);

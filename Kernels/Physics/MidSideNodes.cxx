@@ -5,6 +5,7 @@
 #include "Error.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -92,6 +93,12 @@ std::vector<std::array<std::int32_t, 2>> AddMidSideNodes(ElasticBody& body)
     }
     const auto a = static_cast<std::size_t>(edge.Key >> 32);
     const auto b = static_cast<std::size_t>(edge.Key & 0xffffffffu);
+    if (body.Points.size() > std::numeric_limits<std::int32_t>::max())
+    {
+      throw Error(
+        "The mesh has too many edges: with a node in the middle of each there are more than "
+        "2,147,483,648 nodes. Use a coarser mesh.");
+    }
     edge.Node = static_cast<std::int32_t>(body.Points.size());
     body.Points.push_back(0.5 * (body.Points[a] + body.Points[b]));
     if (!body.Fixed.empty())

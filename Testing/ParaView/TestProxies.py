@@ -12,8 +12,8 @@ from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
 
 from PluginTesting import plugin_proxies
 
-# Methods that need no property: those that set data instead of a connection, those that a clean_command replaces, those
-# that access elements of lists, and those that need a number which an earlier call has returned.
+# Methods that need no property: those that set data instead of a connection, those that properties
+# of lists replace, those that access elements of lists, and those that need a number which an earlier call has returned.
 WITHOUT_PROPERTY = {
     "SetDeformationData",
     "SetRestData",
@@ -21,6 +21,7 @@ WITHOUT_PROPERTY = {
     "SetSheetData",
     "SetSurfaceData",
     "GetNumberOfToolPositions",
+    "ClearToolPositions",
     "RemoveCategoricalArray",
     "GetNumberOfCategoricalArrays",
     "GetCategoricalArray",

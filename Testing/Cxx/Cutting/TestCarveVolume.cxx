@@ -265,6 +265,21 @@ TEST(CarveVolume, Tool)
     steps.Filter->Undo();
     EXPECT_EQ(steps.CopyMask(), masks[static_cast<std::size_t>(i - 1)]);
   }
+  // A stroke that begins like the last one, with a larger tool.
+  Edited<vtkCarveVolume> widened;
+  widened.Filter->SetInputData(volume);
+  for (const double radius : { 1.7, 3.4 })
+  {
+    Edited<vtkCarveVolume> wanted;
+    wanted.Filter->SetInputData(volume);
+    for (Edited<vtkCarveVolume>* carve : { &widened, &wanted })
+    {
+      carve->Filter->ClearToolPositions();
+      carve->Filter->SetToolRadius(radius);
+      carve->Filter->AddToolPosition(4, 5, 6);
+    }
+    EXPECT_EQ(widened.CopyMask(), wanted.CopyMask());
+  }
   // The deformation moves the volume by whole voxels, and the tool by as much.
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(2, -1, 3));

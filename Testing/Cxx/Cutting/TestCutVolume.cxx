@@ -189,6 +189,34 @@ TEST(CutVolume, Sheets)
   EXPECT_EQ(cut.CountOff(), 320);
   cut.Filter->SetSweepVector(0, 0, 6);
   EXPECT_EQ(cut.CountOff(), 160);
+
+  // Hidden and duplicate cells do not cut. Cells are numbered in the order vertices, lines,
+  // polygons, strips.
+  vtkNew<vtkPolyData> mixed;
+  mixed->SetPoints(MakePlaneX(volume, 4.5)->GetPoints());
+  mixed->AllocateEstimate(3, 4);
+  mixed->InsertNextCell(VTK_TRIANGLE_STRIP, 4, ids);
+  mixed->InsertNextCell(VTK_VERTEX, 1, ids);
+  mixed->InsertNextCell(VTK_LINE, 2, ids);
+  cut.Filter->SetSheetData(mixed);
+  cut.Filter->SetSweepVector(0, 0, 54);
+  for (const int kind : { vtkDataSetAttributes::DUPLICATECELL, vtkDataSetAttributes::HIDDENCELL })
+  {
+    const auto countOff = [&](std::initializer_list<vtkIdType> hidden)
+    {
+      auto ghosts = MakeArray<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(), 3);
+      ghosts->Fill(0);
+      for (const vtkIdType cell : hidden)
+      {
+        ghosts->SetValue(cell, static_cast<unsigned char>(kind));
+      }
+      mixed->GetCellData()->AddArray(ghosts);
+      return cut.CountOff();
+    };
+    EXPECT_EQ(countOff({ 0, 1 }), 320);
+    EXPECT_EQ(countOff({ 2 }), 160);
+    EXPECT_EQ(countOff({ 1, 2 }), 0);
+  }
 }
 
 TEST(CutVolume, Edits)
@@ -223,8 +251,8 @@ TEST(CutVolume, Edits)
     EXPECT_NE(masks.back(), masks[masks.size() - 2]);
   }
   EXPECT_EQ(cut.Filter->GetNumberOfToolPositions(), 4);
-  // Clearing and adding the same positions again, as user interfaces do, changes nothing.
-  cut.Filter->ClearToolPositions();
+  // Giving the same list again, as user interfaces do, changes nothing.
+  cut.Filter->ReplaceToolPositions();
   cut.Filter->AddToolPosition(1.5, -1, -1, 1.5, -1, 9);
   for (const double y : { 2.0, 4.0, 9.0 })
   {
@@ -275,6 +303,21 @@ TEST(CutVolume, Edits)
   EXPECT_EQ(cut.CopyMask(), start);
   cut.Filter->Redo();
   EXPECT_EQ(cut.CopyMask(), start);
+
+  // After ClearToolPositions() the same positions are another stroke.
+  Edited<vtkCutVolume> again;
+  again.Filter->SetInputData(volume);
+  const auto move = [&](double y) { again.Filter->AddToolPosition(1.5, y, -1, 1.5, y, 9); };
+  move(-1.0);
+  move(9.0);
+  const auto stroke = again.CopyMask();
+  EXPECT_NE(stroke, start);
+  again.Filter->Undo();
+  EXPECT_EQ(again.CopyMask(), start);
+  again.Filter->ClearToolPositions();
+  move(-1.0);
+  move(9.0);
+  EXPECT_EQ(again.CopyMask(), stroke);
 }
 
 // The arrays of the output, and edits after changes of the volume.

@@ -82,6 +82,16 @@ TYPED_TEST(ElasticModels, Misuse)
   EXPECT_TRUE(HasPart(tryMesh([](vtkUnstructuredGrid* mesh)
                         { mesh->GetPointData()->GetArray("Fixed")->SetNumberOfTuples(3); }),
     "\"Fixed\""));
+  EXPECT_TRUE(HasPart(tryMesh(
+                        [&](vtkUnstructuredGrid* mesh)
+                        {
+                          const auto values =
+                            MakeArray<vtkDoubleArray>("Fixed", mesh->GetNumberOfPoints());
+                          values->Fill(0.0);
+                          values->SetValue(8, nan);
+                          mesh->GetPointData()->AddArray(values);
+                        }),
+    "the first one being number 8"));
   for (const char* name : { "YoungModulus", "PoissonRatio", "Density" })
   {
     const auto add = [&](vtkUnstructuredGrid* mesh, double value, int components)
@@ -400,6 +410,56 @@ TYPED_TEST(ElasticModels, ContinuedSimulation)
   simulated.Observer->Clear();
   EXPECT_TRUE(
     HasPart(simulated.Filter->GetSummary(), "Nodes: " + std::to_string(NodesOfBar<Filter>) + "\n"));
+}
+
+// A point that no cell uses changes nothing, however far away it is.
+TYPED_TEST(ElasticModels, UnusedPoint)
+{
+  using Filter = TypeParam;
+  std::vector<glm::dvec3> ends;
+  for (const bool isAdded : { false, true })
+  {
+    vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+    const vtkIdType last = bar->GetNumberOfPoints() - 1;
+    if (isAdded)
+    {
+      bar->GetPoints()->InsertNextPoint(1e9, 0.0, 0.0);
+      bar->GetPointData()->GetArray("Fixed")->InsertNextTuple1(0.0);
+    }
+    Simulated<Filter> simulated(bar);
+    simulated.Filter->SetGravity(0.0, 0.0, 2.0);
+    EXPECT_EQ(simulated.TryUpdate(), "");
+    glm::dvec3 end;
+    simulated.Copy()->GetTuple(last, &end.x);
+    ends.push_back(end);
+  }
+  EXPECT_GT(glm::length(ends[0]), 0.0);
+  EXPECT_LT(glm::distance(ends[0], ends[1]), 1e-6 * glm::length(ends[0]));
+}
+
+// Nodes that are fixed for a while are at rest when they are freed.
+TEST(ElasticDeformation, FreedNodes)
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+  vtkDataArray* fixed = bar->GetPointData()->GetArray("Fixed");
+  fixed->Fill(0.0);
+  Simulated<vtkMassSpringDeformation> falling(bar);
+  const auto advance = [&](double gravity)
+  {
+    falling.Filter->SetGravity(0.0, 0.0, gravity);
+    EXPECT_EQ(falling.TryUpdate(), "");
+    return falling.Copy()->GetComponent(0, 2);
+  };
+  const double fallen = advance(9.81);
+  EXPECT_GT(fallen, 0.0);
+  fixed->Fill(1.0);
+  fixed->SetComponent(bar->GetNumberOfPoints() - 1, 0, 0.0); // one node has to be free
+  fixed->Modified();
+  EXPECT_EQ(advance(0.0), fallen);
+  fixed->Fill(0.0);
+  fixed->Modified();
+  EXPECT_NEAR(
+    advance(0.0), fallen, 0.1 * fallen); // with its old velocity it would be 3 times as far
 }
 
 // An abort of the update after a change of the material.

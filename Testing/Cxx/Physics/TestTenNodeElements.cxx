@@ -293,6 +293,13 @@ TEST(TenNodeElements, Output)
   EXPECT_TRUE(output->GetPoints() == points && output->GetCells() == cells);
   EXPECT_EQ(get("Force", 3), 2e-3);
   EXPECT_EQ(get("Force", NodesOfCube), 0.0);
+  // The program may have called Modified() of the mesh only.
+  vtkDoubleArray::SafeDownCast(cube->GetPointData()->GetArray("Force"))->SetValue(9, 3e-3);
+  heights->SetValue(3, 7.0);
+  cube->Modified();
+  EXPECT_EQ(elements.TryUpdate(), "");
+  EXPECT_EQ(get("Force", 3), 3e-3);
+  EXPECT_EQ(get("Height", 3), 7.0);
 
   // The output is a valid mesh of ten-node tetrahedra, whose points and cells are passed.
   vtkNew<vtkUnstructuredGrid> again;
