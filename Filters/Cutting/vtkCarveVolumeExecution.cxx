@@ -123,7 +123,7 @@ void vtkCarveVolume::vtkInternals::Check() const
 {
   if (!std::isfinite(this->Self->ToolRadius) || this->Self->ToolRadius <= 0.0)
   {
-    throw Error("ToolRadius is " + std::to_string(this->Self->ToolRadius) +
+    throw Error("ToolRadius is " + deformvolume::FormatNumber(this->Self->ToolRadius) +
       ". Set a finite radius greater than 0.");
   }
 }

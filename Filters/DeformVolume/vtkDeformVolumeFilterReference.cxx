@@ -148,8 +148,8 @@ ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetOutputGeometry(
       const double spacing = this->Self->CustomSpacing[axis];
       if (!std::isfinite(spacing) || spacing <= 0.0)
       {
-        throw Error(std::string("CustomSpacing is ") + std::to_string(spacing) + " on axis " +
-          "xyz"[axis] + ". Set a spacing greater than 0.");
+        throw Error(std::string("CustomSpacing is ") + deformvolume::FormatNumber(spacing) +
+          " on axis " + "xyz"[axis] + ". Set a spacing greater than 0.");
       }
       // The spacing keeps the sign of the volume's spacing.
       output.Spacing[axis] =

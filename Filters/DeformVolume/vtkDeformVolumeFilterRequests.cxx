@@ -394,6 +394,7 @@ int vtkDeformVolumeFilter::RequestData(
       });
   };
   std::string form = "field";
+  const bool isPart = ranks.IsAny(this->Internals->WantsPart(outInfo));
   ranks.Attempt(
     [&]
     {
@@ -404,11 +405,12 @@ int vtkDeformVolumeFilter::RequestData(
       this->DeviceInUse = this->Internals->SelectDevice();
       heldBytes = state.Outputs.Prepare(arrays, numberOfPoints);
       // The resampler is chosen by the memory that the whole output needs, so that all parts of the
-      // output have the same one. A volume that is read in parts does not have to fit.
+      // output have the same one. A volume that can be read in parts does not have to fit, even if
+      // this part of the output needs all of it.
       request.Method = this->Internals->ChooseResampler(worked,
         [&](deformvolume::Resampling method)
         {
-          if (mapped.IsWhole())
+          if (!isPart || !this->Internals->CanTakePart(input[0]->GetInformationObject(0)))
           {
             checkMemory(whole, method);
           }

@@ -407,7 +407,7 @@ void HoldNode(double index, const glm::dvec3& displacement, const BodyMesh& mesh
     mesh.Body.IsFixed(node))
   {
     throw Error(std::string("The point array \"") + HeldNodeName + "\" of the handles names node " +
-      std::to_string(index) + ", which is fixed or no node of the mesh.");
+      FormatNumber(index) + ", which is fixed or no node of the mesh.");
   }
   if (isTaken[node] == 0)
   {

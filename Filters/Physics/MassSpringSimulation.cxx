@@ -95,9 +95,9 @@ void MassSpringSimulation::Advance(const Frame& frame)
 {
   if (this->TimeStep > 0.0 && this->TimeStep > this->Model.GetStableTimeStep())
   {
-    throw Error("The time step of " + std::to_string(this->TimeStep * 1e3) +
+    throw Error("The time step of " + FormatNumber(this->TimeStep * 1e3) +
       " ms is longer than the stable one of " +
-      std::to_string(this->Model.GetStableTimeStep() * 1e3) +
+      FormatNumber(this->Model.GetStableTimeStep() * 1e3) +
       " ms. Set a shorter one, or 0 to have it chosen.");
   }
   MassSpringRequest request;

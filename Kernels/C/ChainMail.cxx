@@ -89,7 +89,7 @@ void CheckMaterial(double index, const std::vector<ChainMailMaterial>& table, co
 {
   if (!(index >= 0.0 && index < static_cast<double>(table.size()) && index == std::floor(index)))
   {
-    throw Error(std::string(who) + " is " + std::to_string(index) + ", but there are " +
+    throw Error(std::string(who) + " is " + FormatNumber(index) + ", but there are " +
       std::to_string(table.size()) + " materials, from 0 on. Give the number of one.");
   }
 }

@@ -158,7 +158,7 @@ CarvingTool MakeTool(const dv_body* given)
       if (!std::isfinite(least) || !std::isfinite(most) || least > most)
       {
         throw Error("The bounds of the body on axis " + std::string(1, "xyz"[axis]) + " are " +
-          std::to_string(least) + " to " + std::to_string(most) +
+          FormatNumber(least) + " to " + FormatNumber(most) +
           ". Give finite ones in ascending order, or 0 for all six where it has none.");
       }
       tool.Bounds.Min[axis] = least;
@@ -211,7 +211,7 @@ std::int32_t dv_carve_label(
       const LabelReader reader = MakeLabelReader(array);
       if (!HasLabel(finder.Volume.PointExtent, reader, label))
       {
-        throw Error("No voxel has the label " + std::to_string(label) +
+        throw Error("No voxel has the label " + FormatNumber(label) +
           ". Give one that occurs in the array of labels.");
       }
       return finder.CarveLabel(reader, label);

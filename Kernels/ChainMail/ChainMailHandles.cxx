@@ -36,7 +36,7 @@ void Check(const ChainMailBlocks& blocks, const ChainMailHandle& handle, std::si
   }
   if (!std::isfinite(handle.Radius) || handle.Radius < 0.0)
   {
-    throw Error(name + " has the radius " + std::to_string(handle.Radius) +
+    throw Error(name + " has the radius " + FormatNumber(handle.Radius) +
       ". It must be a finite number, 0 or more.");
   }
 }

@@ -25,18 +25,18 @@ void Check(const ChainMailMaterial& material, std::size_t index)
   // Each condition is negated so that NaN is refused, too.
   if (!(material.MinimumStretch >= 0.0 && material.MinimumStretch <= 1.0))
   {
-    throw Error(name + " has the minimum stretch " + std::to_string(material.MinimumStretch) +
+    throw Error(name + " has the minimum stretch " + FormatNumber(material.MinimumStretch) +
       ". It must be between 0 and 1, as a link at rest has the length 1.");
   }
   if (!(material.MaximumStretch >= 1.0 && material.MaximumStretch <= LargestLimit))
   {
-    throw Error(name + " has the maximum stretch " + std::to_string(material.MaximumStretch) +
+    throw Error(name + " has the maximum stretch " + FormatNumber(material.MaximumStretch) +
       ". It must be between 1 and 1000, as a link at rest has the length 1.");
   }
   if (!(material.Shear >= 0.0 && material.Shear <= LargestLimit))
   {
-    throw Error(name + " has the shear " + std::to_string(material.Shear) +
-      ". It must be between 0 and 1000.");
+    throw Error(
+      name + " has the shear " + FormatNumber(material.Shear) + ". It must be between 0 and 1000.");
   }
 }
 

@@ -165,7 +165,7 @@ void ChainMailModel::SetVoxelGrid(const Extent& extent, const std::array<double,
     if (!(spacing[axis] > 0.0) || !std::isfinite(spacing[axis]))
     {
       throw Error("The spacing of the volume on axis " + std::to_string(axis) + " is " +
-        std::to_string(spacing[axis]) + ". It must be finite and greater than 0.");
+        FormatNumber(spacing[axis]) + ". It must be finite and greater than 0.");
     }
   }
   Internals& impl = *this->Impl;
@@ -305,11 +305,11 @@ void ChainMailModel::CheckRequest(const Extent& extent, const ChainMailRequest& 
   if (!(request.Elasticity >= 0.0 && request.Elasticity <= 1.0))
   {
     throw Error(
-      "The elasticity is " + std::to_string(request.Elasticity) + ". It must be between 0 and 1.");
+      "The elasticity is " + FormatNumber(request.Elasticity) + ". It must be between 0 and 1.");
   }
   if (!(request.PlasticityThreshold >= 0.0))
   {
-    throw Error("The plasticity threshold is " + std::to_string(request.PlasticityThreshold) +
+    throw Error("The plasticity threshold is " + FormatNumber(request.PlasticityThreshold) +
       ". It must be 0 or more.");
   }
   CheckHandles(ChainMailBlocks(extent), request.Handles);

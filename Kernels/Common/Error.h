@@ -4,6 +4,7 @@
 
 #include "DeformVolumeExport.h"
 
+#include <cstdio>
 #include <exception>
 #include <stdexcept>
 #include <string>
@@ -27,6 +28,14 @@ public:
   /// Returns "aborted".
   const char* what() const noexcept override { return "aborted"; }
 };
+
+/// Returns a number for a message, with up to seven significant digits.
+inline std::string FormatNumber(double number)
+{
+  char digits[32];
+  std::snprintf(digits, sizeof(digits), "%.7g", number);
+  return digits;
+}
 
 } // namespace deformvolume
 

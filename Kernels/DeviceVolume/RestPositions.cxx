@@ -73,8 +73,8 @@ cl::Buffer MakeRestPositions(const OpenCLContext& context, const VoxelGrid& grid
     if (!(std::abs(bounds.Min[axis]) <= MostOutputIndex &&
           std::abs(bounds.Max[axis]) <= MostOutputIndex))
     {
-      throw Error("The voxels at rest have output indices from " +
-        std::to_string(bounds.Min[axis]) + " to " + std::to_string(bounds.Max[axis]) +
+      throw Error("The voxels at rest have output indices from " + FormatNumber(bounds.Min[axis]) +
+        " to " + FormatNumber(bounds.Max[axis]) +
         " on an axis, but at most 2^21 is possible. Use a coarser output spacing, or a volume "
         "whose "
         "extent begins closer to 0.");

@@ -33,7 +33,7 @@ void CheckTimes(const MassSpringRequest& request)
   {
     if (!(value >= 0.0) || !std::isfinite(value))
     {
-      throw Error(std::string("The ") + name + " is " + std::to_string(value) +
+      throw Error(std::string("The ") + name + " is " + FormatNumber(value) +
         ". It must be a finite number, 0 or more.");
     }
   };
@@ -176,7 +176,7 @@ void MassSpringModel::Internals::Run(
     if (this->State->TakeDivergence())
     {
       throw Error("The simulation has diverged with a time step of " +
-        std::to_string(step.TimeStep * 1e3) +
+        FormatNumber(step.TimeStep * 1e3) +
         " ms. The body is as it was before. Use a shorter "
         "time step, move handles less at a time, or use smaller forces.");
     }

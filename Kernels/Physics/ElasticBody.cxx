@@ -273,18 +273,18 @@ void CheckMaterial(const ElasticMaterial& material, const std::string& where)
 {
   if (!(material.YoungModulus > 0.0) || !std::isfinite(material.YoungModulus))
   {
-    throw Error("The Young modulus" + where + " is " + std::to_string(material.YoungModulus) +
+    throw Error("The Young modulus" + where + " is " + FormatNumber(material.YoungModulus) +
       " Pa. It must be greater than 0.");
   }
   if (!(material.PoissonRatio >= 0.0 &&
         material.PoissonRatio < ElasticMaterial::LargestPoissonRatio))
   {
-    throw Error("The Poisson ratio" + where + " is " + std::to_string(material.PoissonRatio) +
+    throw Error("The Poisson ratio" + where + " is " + FormatNumber(material.PoissonRatio) +
       ". It must be 0 or more, and less than 0.495.");
   }
   if (!(material.Density > 0.0) || !std::isfinite(material.Density))
   {
-    throw Error("The density" + where + " is " + std::to_string(material.Density) +
+    throw Error("The density" + where + " is " + FormatNumber(material.Density) +
       " kg/m^3. It must be greater than 0.");
   }
 }

@@ -17,7 +17,7 @@ OutsideVoxels MakeKeptVoxels(double fadeDistance)
 {
   if (!std::isfinite(fadeDistance) || fadeDistance < 0.0)
   {
-    throw Error("The fade distance is " + std::to_string(fadeDistance) +
+    throw Error("The fade distance is " + FormatNumber(fadeDistance) +
       ". Set a distance in world units, or 0, with which nothing outside the mesh or the field "
       "moves.");
   }
@@ -59,8 +59,8 @@ std::string FindFoldsOfFading(const std::string& border, double longest, double 
   {
     return "";
   }
-  return "The " + border + " by up to " + std::to_string(longest) +
-    ", more than two thirds of the fade distance, " + std::to_string(fadeDistance) +
+  return "The " + border + " by up to " + FormatNumber(longest) +
+    ", more than two thirds of the fade distance, " + FormatNumber(fadeDistance) +
     ": what lies outside may fold over. Set a fade distance of at least twice that displacement.";
 }
 
@@ -99,7 +99,7 @@ std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds&
   // folds or stretches the volume there.
   if (fadeDistance == 0.0 && longest > 2.0 * std::min({ spacing.x, spacing.y, spacing.z }))
   {
-    return "The " + border + " by up to " + std::to_string(longest) +
+    return "The " + border + " by up to " + FormatNumber(longest) +
       ", and as the fade distance is 0 the volume is stretched or folded there. Set a fade "
       "distance of at least twice that displacement.";
   }

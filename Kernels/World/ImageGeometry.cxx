@@ -199,7 +199,7 @@ void CheckTransform(const ImageGeometry& geometry, const std::string& what)
     if (!std::isfinite(geometry.Spacing[axis]) || geometry.Spacing[axis] == 0.0)
     {
       throw Error("The spacing of " + what + " on axis " + "xyz"[axis] + " is " +
-        std::to_string(geometry.Spacing[axis]) + ". Set one that is not 0.");
+        FormatNumber(geometry.Spacing[axis]) + ". Set one that is not 0.");
     }
   }
   const double determinant = glm::determinant(geometry.Direction);

@@ -24,7 +24,7 @@ int ToIndex(double index)
   constexpr double most = 1 << 29;
   if (!(std::abs(index) <= most))
   {
-    throw Error("The output would reach to the structured index " + std::to_string(index) +
+    throw Error("The output would reach to the structured index " + FormatNumber(index) +
       ". Check the bounds, the output spacing, and that volume and deformation are in the same "
       "world units.");
   }
@@ -82,7 +82,7 @@ IndexBounds GetWorldBoxBounds(const double* box, const ImageGeometry& image)
     if (!isBox)
     {
       throw Error(std::string("The bounds of the output are no box on axis ") + "xyz"[axis] + ": " +
-        std::to_string(box[2 * axis]) + " to " + std::to_string(box[2 * axis + 1]) +
+        FormatNumber(box[2 * axis]) + " to " + FormatNumber(box[2 * axis + 1]) +
         ". Set a minimum no greater than the maximum.");
     }
     bounds.Min[axis] = box[2 * axis];

@@ -119,7 +119,7 @@ void WorldDeformer::SetOutput(const OutputSettings& settings)
     const double spacing = (*settings.Spacing)[axis];
     if (!std::isfinite(spacing) || spacing <= 0.0)
     {
-      throw Error(std::string("The output spacing is ") + std::to_string(spacing) + " on axis " +
+      throw Error(std::string("The output spacing is ") + FormatNumber(spacing) + " on axis " +
         "xyz"[axis] + ". Set a spacing greater than 0.");
     }
   }

@@ -166,10 +166,11 @@ class DeformVolume(VTKPythonAlgorithmBase):
     imported, which hides those, they are Python warnings (deformvolume.DeformationWarning).
 
     The output is vtkImageData with the arrays of the volume and "vtkValidPointMask": 1 for voxels that the deformed
-    volume covers. Updates read the whole inputs. If they have several time steps, the grid of the output must be the
-    same at all of them: use VOLUME_BOUNDS or a reference image. Update() and UpdateTimeStep(), UpdateWholeExtent(),
-    UpdateExtent() and UpdatePiece() raise an exception for each error, and KeyboardInterrupt after Ctrl-C or
-    SetAbortExecute(1); the output is then empty. If the filter is updated by a downstream filter, VTK prints the error.
+    volume covers. Updates read the whole inputs; with MPI, each rank uses only the inputs that it has itself. If inputs
+    have several time steps, the grid of the output must be the same at all of them: use VOLUME_BOUNDS or a reference
+    image. Update() and UpdateTimeStep(), UpdateWholeExtent(), UpdateExtent() and UpdatePiece() raise an exception for
+    each error, and KeyboardInterrupt after Ctrl-C or SetAbortExecute(1); the output is then empty. If the filter is
+    updated by a downstream filter, VTK prints the error.
     """
 
     DISCARD, EXTRAPOLATE, KEEP = range(3)
@@ -402,6 +403,9 @@ class DeformVolume(VTKPythonAlgorithmBase):
         for port in range(4):
             for number in range(inInfo[port].GetNumberOfInformationObjects()):
                 info = inInfo[port].GetInformationObject(number)
+                info.Set(pipeline.UPDATE_PIECE_NUMBER(), 0)
+                info.Set(pipeline.UPDATE_NUMBER_OF_PIECES(), 1)
+                info.Set(pipeline.UPDATE_NUMBER_OF_GHOST_LEVELS(), 0)
                 if info.Has(pipeline.WHOLE_EXTENT()):
                     extent = list(info.Get(pipeline.WHOLE_EXTENT()))
                     if port == 3:

@@ -373,6 +373,38 @@ class Pipeline(unittest.TestCase):
             flip.UpdateTimeStep(float(time))
             expect(time, values(flip.GetOutput())[:, :, ::-1])
 
+    def test_pieces(self):
+        """Pieces of the output are made from the whole inputs."""
+        from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+        from vtkmodules.vtkCommonDataModel import vtkDataObject
+        from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as pipeline
+        from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm
+
+        class Divided(VTKPythonAlgorithmBase):
+            """A mesh of one cell, which is in the first piece."""
+
+            def __init__(self):
+                VTKPythonAlgorithmBase.__init__(self, nInputPorts=0, outputType="vtkUnstructuredGrid")
+
+            def RequestInformation(self, request, inInfo, outInfo):
+                outInfo.GetInformationObject(0).Set(vtkAlgorithm.CAN_HANDLE_PIECE_REQUEST(), 1)
+                return 1
+
+            def RequestData(self, request, inInfo, outInfo):
+                info = outInfo.GetInformationObject(0)
+                if info.Get(pipeline.UPDATE_PIECE_NUMBER()) == 0:
+                    vtkDataObject.GetData(info).ShallowCopy(make_mesh(Pipeline.SHIFT))
+                return 1
+
+        divided = Divided()
+        self.filter.SetDeformationConnection(divided.GetOutputPort())
+        self.filter.Update()
+        self.expect_shift()
+        whole = values(self.filter.GetOutput()).copy()
+        for piece in range(3):
+            self.filter.UpdatePiece(piece, 3, 0)
+            numpy.testing.assert_array_equal(values(self.filter.GetOutput()), whole)
+
     def expect_error(self, words, deformation):
         self.filter.SetDeformationData(deformation)
         with self.assertRaisesRegex(Exception, words):
