@@ -278,11 +278,7 @@ int vtkDeformVolumeFilter::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  if (this->Internals->BoundsHaveGrown)
-  {
-    this->Internals->BoundsHaveGrown = false;
-    this->Modified();
-  }
+  this->Internals->AnnounceGrowth();
   this->Internals->Execution.Renew(this);
   return this->Superclass::ComputePipelineMTime(
     request, input, output, requestFromOutputPort, mtime);

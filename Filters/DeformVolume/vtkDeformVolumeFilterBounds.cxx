@@ -11,11 +11,14 @@
 #include "WorldBoxes.h"
 
 #include "vtkElasticDeformation.h"
+#include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
 #include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationExecutivePortVectorKey.h"
 #include "vtkInformationKeyLookup.h"
+#include "vtkMultiTimeStepAlgorithm.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -42,6 +45,34 @@ bool IsSimulated(vtkAlgorithm* algorithm, int depth)
     for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
     {
       if (IsSimulated(algorithm->GetInputAlgorithm(port, i), depth + 1))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// Whether an algorithm downstream is in the middle of an update that takes several time steps of
+// the output. Then it has begun to execute after the output was made, and has not finished.
+bool IsCollectingTimes(vtkAlgorithm* algorithm, vtkMTimeType made)
+{
+  for (int port = 0; port < algorithm->GetNumberOfOutputPorts(); ++port)
+  {
+    vtkInformation* info = algorithm->GetOutputInformation(port);
+    const int count = vtkExecutive::CONSUMERS()->Length(info);
+    for (int i = 0; i < count; ++i)
+    {
+      vtkAlgorithm* consumer = vtkExecutive::CONSUMERS()->GetExecutives(info)[i]->GetAlgorithm();
+      if (vtkMultiTimeStepAlgorithm::SafeDownCast(consumer) && consumer->GetProgress() < 1.0)
+      {
+        vtkDataObject* data = consumer->GetOutputInformation(0)->Get(vtkDataObject::DATA_OBJECT());
+        if (data && data->GetMTime() > made)
+        {
+          return true;
+        }
+      }
+      if (IsCollectingTimes(consumer, made))
       {
         return true;
       }
@@ -371,6 +402,18 @@ void vtkDeformVolumeFilter::vtkInternals::HoldTime(vtkInformation* output)
   {
     output->Set(Pipeline::UPDATE_EXTENT(), after.data(), 6);
     this->ExtentBefore = before;
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::AnnounceGrowth()
+{
+  // vtkMultiTimeStepAlgorithm drops the time steps that it has collected if this filter is modified
+  // in between, and then never ends. It gets the new extent in its next update.
+  if (this->BoundsHaveGrown && !IsCollectingTimes(this->Self, this->Self->GetOutput()->GetMTime()))
+  {
+    this->BoundsHaveGrown = false;
+    this->Self->Modified();
   }
 }
 

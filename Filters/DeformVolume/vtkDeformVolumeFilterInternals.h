@@ -113,6 +113,8 @@ public:
   void KeepInBounds(const deformvolume::Ranks& ranks, const deformvolume::ImageGeometry& volume,
     const deformvolume::DeformationSource& source, vtkInformation* output);
   ///@}
+  /// Marks the filter as modified if the bounds have grown, so that consumers get the new extent.
+  void AnnounceGrowth();
   /// Warns if the whole extent has grown in this update, but a consumer still requests the previous
   /// one.
   void WarnOfCut(vtkInformation* output);

@@ -4,6 +4,7 @@
 // that it does not.
 #include "TimedDeformation.h"
 
+#include <vtkImageShiftScale.h>
 #include <vtkInformation.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkTemporalInterpolator.h>
@@ -119,6 +120,52 @@ TEST(DeformContinuousTime, NoTime)
   deformed.Update();
   EXPECT_EQ(GetExtent(deformed.Filter->GetOutput()), (Extent{ { 0, 14, 0, 8, 0, 7 } }));
   EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), deformed.Volume->GetNumberOfPoints());
+}
+
+// vtkTemporalInterpolator, behind the filter or another one, collects two time steps in one update.
+// The extent grows between them. Both steps then have the previous extent, and the next update has
+// the new one.
+TEST(DeformContinuousTime, InterpolatedOutput)
+{
+  for (const bool isDirect : { true, false })
+  {
+    TimedDeformation deformed([](double time) { return 10.0 * time; });
+    deformed.Lattice->Steps = { 0.0, 1.0, 2.0, 3.0, 4.0 };
+    vtkNew<vtkImageShiftScale> between;
+    between->SetInputConnection(deformed.Filter->GetOutputPort());
+    vtkNew<vtkTemporalInterpolator> interpolator;
+    interpolator->SetInputConnection(
+      isDirect ? deformed.Filter->GetOutputPort() : between->GetOutputPort());
+    vtkNew<vtkTemporalInterpolator> idle; // must not keep the others from the new extent
+    idle->SetInputConnection(deformed.Filter->GetOutputPort());
+    int last = 9;
+    for (const int before : { 0, 2, 1 })
+    {
+      for (int repeat = 0; repeat < 2; ++repeat)
+      {
+        interpolator->UpdateTimeStep(before + 0.5);
+        const int needed = 9 + 10 * (before + 1);
+        const std::string warning = deformed.TakeWarning();
+        EXPECT_EQ(HasPart(warning, "extends beyond the extent"), needed > last && repeat == 0);
+        EXPECT_EQ(deformed.TakeErrors(), 0);
+        last = repeat == 0 ? last : std::max(last, needed);
+        auto* output = vtkImageData::SafeDownCast(interpolator->GetOutputDataObject(0));
+        EXPECT_EQ(GetExtent(output), (Extent{ { 0, last, 0, 8, 0, 7 } }));
+        for (int x = 0; x <= last; ++x)
+        {
+          const auto get = [&](int atRest)
+          {
+            return atRest < 0 || atRest > 9
+              ? 0.0
+              : deformed.Volume->GetScalarComponentAsDouble(atRest, 3, 4, 0);
+          };
+          // The interpolator rounds to integers.
+          EXPECT_NEAR(output->GetScalarComponentAsDouble(x, 3, 4, 0),
+            0.5 * (get(x - 10 * before) + get(x - 10 * (before + 1))), 1.0);
+        }
+      }
+    }
+  }
 }
 
 } // namespace
