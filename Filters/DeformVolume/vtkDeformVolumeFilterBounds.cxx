@@ -19,6 +19,7 @@
 #include "vtkInformationExecutivePortVectorKey.h"
 #include "vtkInformationKeyLookup.h"
 #include "vtkMultiTimeStepAlgorithm.h"
+#include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
@@ -88,7 +89,17 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(const deformvolume::
   const ImageGeometry& volume, vtkInformation* output, const double* time)
 {
   vtkDataObject* shape = deformvolume::UpdateInput(this->Self, 1, output, time, ranks);
+  const vtkMTimeType made = shape ? shape->GetMTime() : 0;
+  const auto copy = vtk::TakeSmartPointer(shape ? shape->NewInstance() : nullptr);
+  if (shape)
+  {
+    copy->ShallowCopy(shape);
+  }
   vtkDataObject* rest = deformvolume::UpdateInput(this->Self, 2, output, time, ranks);
+  if (shape && shape->GetMTime() != made)
+  {
+    shape = copy; // the same source is upstream of both ports, and was asked for another time
+  }
   const DeformationSource source = this->ReadDeformation(ranks, volume, shape, rest);
   IndexBounds bounds;
   ranks.Attempt([&] { bounds = this->ComputeBounds(volume, source); });

@@ -311,6 +311,7 @@ int vtkDeformVolumeFilter::RequestData(
   ranks.Attempt(
     [&]
     {
+      deformvolume::CheckTimes(vtkInternals::ReferencePort, input, outInfo);
       vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
       this->Internals->FollowImage();
       volume = this->Internals->CutToWhole(volume, volumeInfo);

@@ -23,6 +23,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
 
 namespace deformvolume
@@ -344,6 +345,29 @@ void MergeTimes(vtkAlgorithm* filter, int ports, vtkInformation* output)
   {
     const double range[2] = { *ends.begin(), *ends.rbegin() };
     output->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
+}
+
+void CheckTimes(int ports, vtkInformationVector** input, vtkInformation* output)
+{
+  for (int port = 0; port < ports && output->Has(Pipeline::UPDATE_TIME_STEP()); ++port)
+  {
+    const double time = output->Get(Pipeline::UPDATE_TIME_STEP());
+    vtkInformation* info = input[port]->GetInformationObject(0);
+    // Requests are compared, not the times of the data, because a source may choose its nearest
+    // time step. A source without times gives the same data for all requests.
+    if (info && info->Has(Pipeline::UPDATE_TIME_STEP()) && !GetTimes(info).empty() &&
+      info->Get(Pipeline::UPDATE_TIME_STEP()) != time)
+    {
+      std::ostringstream text;
+      text << "The source on input port " << port << " was asked for the time " << time
+           << ", but another input of this filter comes from the same source and has asked for the "
+              "time "
+           << info->Get(Pipeline::UPDATE_TIME_STEP())
+           << ". A source gives one time in each update. Use vtkForceTime (Force Time in ParaView) "
+              "for the input of a fixed time, or read the file a second time.";
+      throw Error(text.str());
+    }
   }
 }
 

@@ -76,6 +76,10 @@ std::vector<double> GetTimes(vtkInformation* input);
 /// Sets the time steps and the time range of the output to the union of those of the first ports.
 void MergeTimes(vtkAlgorithm* filter, int ports, vtkInformation* output);
 
+/// Throws an Error if the source of one of the first ports has been asked for another time than the
+/// output: another input has the same source, and has requested that time.
+void CheckTimes(int ports, vtkInformationVector** input, vtkInformation* output);
+
 /// Sets the time step of the output data to the requested one, or else to that of the first input
 /// that has one. Inputs may be null.
 void SetTimeStep(

@@ -4,9 +4,12 @@
 // step.
 #include "TimedDeformation.h"
 
+#include <vtkForceTime.h>
 #include <vtkImageShiftScale.h>
 #include <vtkInformation.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkTemporalShiftScale.h>
+#include <vtkTrivialProducer.h>
 
 #include <numeric>
 
@@ -28,6 +31,14 @@ int FindCoveredStart(Deformed& deformed)
   return -1;
 }
 
+Extent GetWholeExtent(vtkAlgorithm* algorithm)
+{
+  Extent whole;
+  algorithm->GetOutputInformation(0)->Get(
+    vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
+  return whole;
+}
+
 } // namespace
 
 TEST(DeformTime, Series)
@@ -42,9 +53,7 @@ TEST(DeformTime, Series)
   vtkInformation* info = deformed.Filter->GetOutputInformation(0);
   EXPECT_EQ(info->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS()), 100);
   EXPECT_EQ(info->Get(vtkStreamingDemandDrivenPipeline::TIME_RANGE())[1], 99.0);
-  Extent whole;
-  info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
-  EXPECT_EQ(whole, (Extent{ { 0, 9, 0, 8, 0, 7 } }));
+  EXPECT_EQ(GetWholeExtent(deformed.Filter), (Extent{ { 0, 9, 0, 8, 0, 7 } }));
 
   const auto check = [&](double time, int last, int first = 0)
   {
@@ -103,4 +112,68 @@ TEST(DeformTime, Series)
   deformed.Filter->UpdateTimeStep(1.0);
   EXPECT_EQ(GetExtent(deformed.Filter->GetOutput()), GetExtent(volume));
   EXPECT_EQ(lattice->Executions, 1);
+}
+
+// The rest mesh is another time of the source that gives the deformation. Of a source of two inputs
+// VTK requests the time of the last input only.
+TEST(DeformTime, RestFromSameSource)
+{
+  TimedDeformation deformed([](double) { return 0.0; });
+  deformed.Lattice->Steps = { 0.0, 1.0, 2.0, 3.0, 4.0 };
+  deformed.Lattice->GetMesh = [&](double time)
+  {
+    auto mesh = MakeMesh(deformed.Volume, 3, 50.0);
+    MovePoints(mesh, Shift(10.0 * time, 0.0, 0.0));
+    return mesh;
+  };
+  const auto check = [&](double time, int shift, int first, int last)
+  {
+    deformed.Filter->UpdateTimeStep(time);
+    EXPECT_EQ(deformed.TakeErrors(), 0) << deformed.LastError;
+    EXPECT_EQ(GetExtent(deformed.Filter->GetOutput()), (Extent{ { first, last, 0, 8, 0, 7 } }));
+    EXPECT_EQ(FindCoveredStart(deformed), shift);
+  };
+
+  // vtkForceTime keeps the data of its time.
+  vtkNew<vtkForceTime> start;
+  start->SetInputConnection(deformed.Lattice->GetOutputPort());
+  start->SetForcedTime(0.0);
+  start->IgnorePipelineTimeOn();
+  deformed.Filter->SetRestConnection(start->GetOutputPort());
+  check(0.0, 0, 0, 9);
+  check(2.0, 20, 0, 29);
+  check(1.0, 10, 0, 29);
+  check(1.5, 15, 0, 29); // between two time steps
+
+  // vtkTemporalShiftScale requests another time in each update.
+  vtkNew<vtkTemporalShiftScale> later;
+  later->SetInputConnection(deformed.Lattice->GetOutputPort());
+  later->SetPreShift(1.0);
+  deformed.Filter->SetRestConnection(later->GetOutputPort());
+  deformed.Filter->SetOutputBoundsModeToVolumeBounds();
+  deformed.Filter->UpdateTimeStep(3.0);
+  EXPECT_EQ(deformed.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(deformed.LastError,
+    "The source on input port 1 was asked for the time 3, but another input of this filter comes "
+    "from the same source and has asked for the time 2."));
+  EXPECT_TRUE(HasPart(deformed.LastError, "vtkForceTime"));
+  EXPECT_EQ(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
+
+  // The extent follows from the right times.
+  deformed.Filter->SetOutputBoundsModeToDeformedBounds();
+  deformed.Filter->UpdateTimeStep(4.0);
+  EXPECT_EQ(GetWholeExtent(deformed.Filter), (Extent{ { 10, 19, 0, 8, 0, 7 } }));
+  deformed.TakeErrors();
+
+  // Other times than those of the output are not an error in themselves: upstream of one input, or
+  // of data that have no times.
+  deformed.Filter->SetRestData(deformed.Lattice->GetMesh(0.0));
+  deformed.Filter->SetDeformationConnection(later->GetOutputPort());
+  check(4.0, 30, 30, 39);
+  vtkNew<vtkTrivialProducer> still;
+  still->SetOutput(deformed.Lattice->GetMesh(0.0));
+  later->SetInputConnection(still->GetOutputPort());
+  deformed.Filter->SetDeformationConnection(still->GetOutputPort());
+  deformed.Filter->SetRestConnection(later->GetOutputPort());
+  check(2.0, 0, 0, 9);
 }
