@@ -10,7 +10,6 @@
 #include "VectorBounds.h"
 #include "WorldBoxes.h"
 
-#include "vtkElasticDeformation.h"
 #include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -22,7 +21,6 @@
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <algorithm>
 #include <cstring>
 
 using deformvolume::DeformationSource;
@@ -32,27 +30,6 @@ using deformvolume::IndexBounds;
 
 namespace
 {
-
-// Whether a simulation is upstream of an algorithm, or is the algorithm itself.
-bool IsSimulated(vtkAlgorithm* algorithm, int depth)
-{
-  constexpr int deepest = 1000;
-  if (vtkElasticDeformation::SafeDownCast(algorithm))
-  {
-    return true;
-  }
-  for (int port = 0; port < algorithm->GetNumberOfInputPorts() && depth < deepest; ++port)
-  {
-    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
-    {
-      if (IsSimulated(algorithm->GetInputAlgorithm(port, i), depth + 1))
-      {
-        return true;
-      }
-    }
-  }
-  return false;
-}
 
 // Whether an algorithm downstream is in the middle of an update that takes several time steps of
 // the output. Then it has begun to execute after the output was made, and has not finished.
@@ -240,35 +217,6 @@ bool vtkDeformVolumeFilter::vtkInternals::DeformationHasTimes() const
 }
 
 //------------------------------------------------------------------------------
-std::optional<double> vtkDeformVolumeFilter::vtkInternals::FindTime(vtkInformation* output) const
-{
-  using Pipeline = vtkStreamingDemandDrivenPipeline;
-  if (output->Has(Pipeline::UPDATE_TIME_STEP()))
-  {
-    return output->Get(Pipeline::UPDATE_TIME_STEP());
-  }
-  std::optional<double> first;
-  for (int port = 1; port < 3; ++port)
-  {
-    if (this->Self->GetNumberOfInputConnections(port) == 0)
-    {
-      continue;
-    }
-    vtkInformation* input = this->Self->GetInputInformation(port, 0);
-    // A source of continuous times, such as vtkTemporalInterpolator, may fail without a time. A
-    // reader has a current step, which a program may have chosen, and a simulation advances.
-    if (!input->Has(Pipeline::TIME_STEPS()) && input->Has(Pipeline::TIME_RANGE()) &&
-      !input->Has(Pipeline::UPDATE_TIME_STEP()) &&
-      !IsSimulated(this->Self->GetInputAlgorithm(port, 0), 0))
-    {
-      const double begin = input->Get(Pipeline::TIME_RANGE())[0];
-      first = std::min(first.value_or(begin), begin);
-    }
-  }
-  return first;
-}
-
-//------------------------------------------------------------------------------
 std::optional<double> vtkDeformVolumeFilter::vtkInternals::FindTimeOfData() const
 {
   auto* previous = vtkInformationDoubleKey::SafeDownCast(
@@ -313,7 +261,7 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
     return this->State->Bounds;
   }
   // The bounds at one time are enough here. HoldTime() and KeepInBounds() add those at other times.
-  const std::optional<double> time = this->FindTime(output);
+  const std::optional<double> time = deformvolume::FindTime(this->Self, 1, ReferencePort, output);
   std::uint64_t bits = 0;
   if (time)
   {

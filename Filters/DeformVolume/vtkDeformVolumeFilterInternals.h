@@ -223,9 +223,6 @@ public:
 private:
   /// Returns false if there was nothing to free.
   bool ReleaseOtherStates();
-  /// The time for which bounds are computed first: the requested time, or the first time of inputs
-  /// that need a requested one. Empty: the inputs have no times, or choose one.
-  std::optional<double> FindTime(vtkInformation* output) const;
   /// Whether the deformation announces times.
   bool DeformationHasTimes() const;
   /// The time of inputs that have chosen one. Empty if they have none, or different ones.

@@ -23,7 +23,7 @@ public:
   /// the defaults, or may have omitted other values: the executive and ParaView do not pass on the
   /// direction. It may also announce the origin and spacing of its input, as vtkResampleToImage
   /// does. Only the data have the right values. Then this function updates a part of the image, at
-  /// the time that is requested from the output. Something must be connected to the port.
+  /// the time of FindTime(). Something must be connected to the port.
   /// Collective.
   const ImageGeometry& Find(
     vtkAlgorithm* filter, int port, vtkInformation* output, const Ranks& ranks);

@@ -5,6 +5,7 @@
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataObject.h"
 #include "vtkDemandDrivenPipeline.h"
+#include "vtkElasticDeformation.h"
 #include "vtkExtentTranslator.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
@@ -20,6 +21,7 @@
 #include "vtkTrivialProducer.h"
 #include "vtkVolumeEditAlgorithm.h"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <set>
@@ -86,6 +88,27 @@ vtkDataObject* Update(vtkAlgorithm* filter, int port, vtkInformation* request, c
       }
     });
   return source->GetProducer()->GetOutputDataObject(source->GetIndex());
+}
+
+// Whether a simulation is upstream of an algorithm, or is the algorithm itself.
+bool IsSimulated(vtkAlgorithm* algorithm, int depth)
+{
+  constexpr int deepest = 1000;
+  if (vtkElasticDeformation::SafeDownCast(algorithm))
+  {
+    return true;
+  }
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts() && depth < deepest; ++port)
+  {
+    for (int i = 0; i < algorithm->GetNumberOfInputConnections(port); ++i)
+    {
+      if (IsSimulated(algorithm->GetInputAlgorithm(port, i), depth + 1))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 bool CanProduceParts(vtkAlgorithm* producer, int index, int depth)
@@ -189,12 +212,42 @@ vtkDataObject* UpdateInput(
   return Update(filter, port, request, ranks);
 }
 
+std::optional<double> FindTime(vtkAlgorithm* filter, int first, int last, vtkInformation* output)
+{
+  if (output->Has(Pipeline::UPDATE_TIME_STEP()))
+  {
+    return output->Get(Pipeline::UPDATE_TIME_STEP());
+  }
+  std::optional<double> time;
+  for (int port = first; port < last; ++port)
+  {
+    if (filter->GetNumberOfInputConnections(port) == 0)
+    {
+      continue;
+    }
+    vtkInformation* input = filter->GetInputInformation(port, 0);
+    // A source of continuous times, such as vtkTemporalInterpolator, may fail without a time. A
+    // reader has a current step, which a program may have chosen, and a simulation advances.
+    if (!input->Has(Pipeline::TIME_STEPS()) && input->Has(Pipeline::TIME_RANGE()) &&
+      !input->Has(Pipeline::UPDATE_TIME_STEP()) &&
+      !IsSimulated(filter->GetInputAlgorithm(port, 0), 0))
+    {
+      const double begin = input->Get(Pipeline::TIME_RANGE())[0];
+      time = std::min(time.value_or(begin), begin);
+    }
+  }
+  return time;
+}
+
 vtkDataObject* UpdateInputPart(
   vtkAlgorithm* filter, int port, vtkInformation* output, const Extent& part, const Ranks& ranks)
 {
   vtkNew<vtkInformation> request;
   RequestExtent(request, part);
-  request->CopyEntry(output, Pipeline::UPDATE_TIME_STEP());
+  if (const std::optional<double> time = FindTime(filter, port, port + 1, output))
+  {
+    request->Set(Pipeline::UPDATE_TIME_STEP(), *time);
+  }
   const RequestKeeper keeper(filter->GetInputConnection(port, 0));
   return Update(filter, port, request, ranks);
 }

@@ -8,6 +8,7 @@
 #include "vtkType.h"
 
 #include <initializer_list>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -64,8 +65,12 @@ std::pair<const void*, vtkMTimeType> GetWrittenStamp(vtkAlgorithm* filter, int p
 /// The connection of an input, and the last modification time of the pipeline upstream of it.
 std::pair<const void*, vtkMTimeType> GetInputStamp(vtkAlgorithm* filter, int port);
 
-/// Updates a part of the image on an input port, at the time step that is requested from the
-/// output.
+/// The time to request from the inputs of the ports from first to before last in the information
+/// pass: that of the output, or else the first time of inputs that need a requested one. Empty: the
+/// inputs have no times, or choose one.
+std::optional<double> FindTime(vtkAlgorithm* filter, int first, int last, vtkInformation* output);
+
+/// Updates a part of the image on an input port, at the time of FindTime().
 vtkDataObject* UpdateInputPart(
   vtkAlgorithm* filter, int port, vtkInformation* output, const Extent& part, const Ranks& ranks);
 

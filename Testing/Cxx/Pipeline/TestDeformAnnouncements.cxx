@@ -15,6 +15,7 @@
 #include <vtkObjectFactory.h>
 #include <vtkRTAnalyticSource.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
+#include <vtkTemporalInterpolator.h>
 
 #include <algorithm>
 
@@ -24,7 +25,8 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 namespace
 {
 
-/// A source that always outputs the same volume, and announces the information that a test sets.
+/// A source that announces the information that a test sets, and outputs a volume: from time 1 on
+/// another one, if it is set.
 class CarelessSource : public vtkImageAlgorithm
 {
 public:
@@ -32,9 +34,18 @@ public:
   vtkTypeMacro(CarelessSource, vtkImageAlgorithm);
 
   vtkSmartPointer<vtkImageData> Volume;
+  vtkSmartPointer<vtkImageData> LaterVolume;
   Extent WholeExtent;
   vtkNew<vtkInformation> Announced;
   int Executions = 0;
+
+  void AnnounceTimes(double first, double second)
+  {
+    const double times[2] = { first, second };
+    this->Announced->Set(Pipeline::TIME_STEPS(), times, 2);
+    this->Announced->Set(Pipeline::TIME_RANGE(), times, 2);
+    this->Modified();
+  }
 
 protected:
   CarelessSource() { this->SetNumberOfInputPorts(0); }
@@ -44,12 +55,10 @@ protected:
   {
     vtkInformation* info = output->GetInformationObject(0);
     info->Set(Pipeline::WHOLE_EXTENT(), this->WholeExtent.data(), 6);
-    info->Remove(vtkDataObject::ORIGIN());
-    info->Remove(vtkDataObject::SPACING());
-    info->Remove(vtkDataObject::DIRECTION());
-    for (vtkInformationDoubleVectorKey* key :
-      { vtkDataObject::ORIGIN(), vtkDataObject::SPACING(), vtkDataObject::DIRECTION() })
+    for (vtkInformationDoubleVectorKey* key : { vtkDataObject::ORIGIN(), vtkDataObject::SPACING(),
+           vtkDataObject::DIRECTION(), Pipeline::TIME_STEPS(), Pipeline::TIME_RANGE() })
     {
+      info->Remove(key);
       info->CopyEntry(this->Announced, key);
     }
     return 1;
@@ -58,7 +67,12 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector* output) override
   {
     ++this->Executions;
-    vtkImageData::GetData(output)->ShallowCopy(this->Volume);
+    vtkInformation* info = output->GetInformationObject(0);
+    const double time =
+      info->Has(Pipeline::UPDATE_TIME_STEP()) ? info->Get(Pipeline::UPDATE_TIME_STEP()) : 0.0;
+    vtkImageData* image = vtkImageData::GetData(info);
+    image->ShallowCopy(time >= 1.0 && this->LaterVolume ? this->LaterVolume : this->Volume);
+    image->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
     return 1;
   }
 };
@@ -206,6 +220,36 @@ TEST(DeformAnnouncements, Reference)
     EXPECT_EQ(GetPoint(output, 0), GetPoint(grid, 0));
     EXPECT_EQ(GetPoint(output, 3999), GetPoint(grid, 3999));
     EXPECT_EQ(source->Executions, 1);
+  }
+}
+
+// vtkTemporalInterpolator fails without a time. The first update reads the geometry before a time
+// is requested.
+TEST(DeformAnnouncements, InterpolatedImages)
+{
+  for (const bool isReference : { false, true })
+  {
+    Careless careless;
+    careless.Source->AnnounceTimes(0.0, 1.0);
+    vtkNew<vtkTemporalInterpolator> interpolator;
+    interpolator->SetInputConnection(careless.Source->GetOutputPort());
+    if (isReference)
+    {
+      careless.Subject.Filter->SetInputData(careless.Volume);
+      careless.Subject.Filter->SetReferenceConnection(interpolator->GetOutputPort());
+    }
+    else
+    {
+      careless.Subject.Filter->SetInputConnection(interpolator->GetOutputPort());
+    }
+    for (const double time : { 0.5, 0.25, 1.0 })
+    {
+      careless.Subject.Filter->UpdateTimeStep(time);
+      EXPECT_EQ(careless.Subject.TakeErrors(), 0) << careless.Subject.LastError;
+      vtkImageData* output = careless.Subject.Filter->GetOutput();
+      EXPECT_EQ(GetExtent(output)[0], isReference ? 0 : 1);
+      EXPECT_GT(careless.Subject.Filter->GetNumberOfCoveredVoxels(), 60000);
+    }
   }
 }
 
