@@ -10,6 +10,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationDoubleVectorKey.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -60,11 +61,17 @@ deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
   deformvolume::CheckTransform(given, "the volume on input port 0");
   if (!deformvolume::AreSamePositions(mapped.Whole, given, mapped.Whole.PointExtent))
   {
+    const bool isAnnounced = info->Has(vtkDataObject::ORIGIN()) &&
+      info->Has(vtkDataObject::SPACING()) && info->Has(vtkDataObject::DIRECTION());
+    const std::string grid = deformvolume::DescribeTransform(mapped.Whole);
     throw Error("The volume on input port 0 has " + deformvolume::DescribeTransform(given) +
-      ", but its source announced " + deformvolume::DescribeTransform(mapped.Whole) +
-      ", from which the extent of the output follows. Give all files of a series the same grid, or "
-      "set ORIGIN(), SPACING() and DIRECTION() of vtkDataObject in the source's "
-      "RequestInformation().");
+      (isAnnounced ? ", but its source announced " + grid +
+            ", from which the extent of the output follows. Give all files of a series the same "
+            "grid, or set ORIGIN(), SPACING() and DIRECTION() of vtkDataObject in the source's "
+            "RequestInformation()."
+                   : ", but had " + grid +
+            " before, from which the extent of the output follows. All time steps need one grid: "
+            "resample them, for example by vtkResampleToImage (Resample To Image in ParaView)."));
   }
   deformvolume::CheckVolume(mapped.Whole);
   mapped.Whole = this->GetCoarseGeometry(mapped.Whole);

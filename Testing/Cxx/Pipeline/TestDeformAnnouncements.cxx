@@ -253,6 +253,30 @@ TEST(DeformAnnouncements, InterpolatedImages)
   }
 }
 
+// The volumes of two time steps have different grids.
+TEST(DeformAnnouncements, OtherGridLater)
+{
+  Careless careless;
+  careless.Source->AnnounceTimes(0.0, 1.0);
+  careless.Source->LaterVolume = vtkSmartPointer<vtkImageData>::New();
+  careless.Source->LaterVolume->ShallowCopy(careless.Volume);
+  careless.Source->LaterVolume->SetOrigin(11.0, -5.0, 3.0);
+  careless.IsRight("the first time step");
+  const auto fails = [&](const char* words)
+  {
+    careless.Subject.Filter->UpdateTimeStep(1.0);
+    EXPECT_EQ(careless.Subject.TakeErrors(), 1);
+    EXPECT_TRUE(HasPart(careless.Subject.LastError, "has origin 11, -5, 3"));
+    EXPECT_TRUE(HasPart(careless.Subject.LastError, words));
+  };
+  fails("but had origin 10, -5, 3, spacing 2, 1.5, 0.5 and direction 1, 0, 0, 0, 1, 0, 0, 0, 1 "
+        "before");
+  const double straight[9] = { 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 };
+  careless.Source->Announced->Set(vtkDataObject::DIRECTION(), straight, 9);
+  careless.Announce(glm::dvec3(10.0, -5.0, 3.0), glm::dvec3(2.0, 1.5, 0.5));
+  fails("but its source announced origin 10, -5, 3");
+}
+
 TEST(DeformAnnouncements, Extents)
 {
   Careless careless;
