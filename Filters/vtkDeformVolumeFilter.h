@@ -47,8 +47,8 @@
  * positions.
  *
  * @par Port 3, the reference image, optional:
- * vtkImageData whose grid becomes that of the output. Only the pipeline information of its source
- * is used, not its data.
+ * vtkImageData whose grid becomes that of the output. Its values are not used. The grid does not
+ * follow time: the output keeps the one that was read first.
  *
  * @par Output:
  * The arrays of the volume, and "vtkValidPointMask" (char): 1 where the deformed volume covers a

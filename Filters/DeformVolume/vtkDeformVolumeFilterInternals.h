@@ -61,7 +61,8 @@ public:
   /// Finds the grid of the reference image, if one is connected. Throws an Error if the grid is not
   /// valid, or not the same on all ranks. Collective.
   void ReadReference(const deformvolume::Ranks& ranks, vtkInformation* output);
-  /// Warns of properties that have no effect because of the reference image.
+  /// Warns of properties that have no effect because of the reference image, and of a reference
+  /// image that varies in time.
   void WarnOfReference();
   /// Warns that the whole output is background.
   void WarnOfNothing() const;
@@ -272,6 +273,7 @@ private:
 
   std::set<std::string> WarnedOf;
   std::string WarnedOfSettings;
+  bool WarnedOfTimes = false;
   std::string WarnedOfLoss;
 };
 

@@ -2,6 +2,7 @@
 // The grid of the output: that of the reference image, or that of the volume.
 #include "vtkDeformVolumeFilterInternals.h"
 
+#include "InputUpdate.h"
 #include "OutputExtent.h"
 #include "PipelineGeometry.h"
 
@@ -10,6 +11,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 using deformvolume::Error;
 using deformvolume::ImageGeometry;
@@ -129,6 +131,20 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfReference()
         << names << ". Disconnect the reference image to use them.");
   }
   this->WarnedOfSettings = names;
+
+  std::vector<double> times;
+  if (this->Reference)
+  {
+    times = deformvolume::GetTimes(this->Self->GetInputInformation(ReferencePort, 0));
+  }
+  const bool isTimed = !times.empty() && times.front() != times.back();
+  if (isTimed && !this->WarnedOfTimes)
+  {
+    vtkWarningWithObjectMacro(this->Self,
+      "The reference image on input port 3 varies in time. The output keeps the grid that was read "
+      "first, and does not follow it if the grid of the reference image moves.");
+  }
+  this->WarnedOfTimes = isTimed;
 }
 
 //------------------------------------------------------------------------------

@@ -277,6 +277,28 @@ TEST(DeformAnnouncements, OtherGridLater)
   fails("but its source announced origin 10, -5, 3");
 }
 
+// The grid of a reference image that varies in time stays, with one warning.
+TEST(DeformAnnouncements, ReferenceInTime)
+{
+  const vtkNew<CarelessSource> source;
+  source->Volume = MakeImage({ { 0, 9, 0, 9, 0, 9 } }, glm::dvec3(2.0), glm::dvec3(20.0, 0.0, 5.0));
+  source->LaterVolume = MakeImage({ { 0, 9, 0, 9, 0, 9 } }, glm::dvec3(2.0));
+  source->WholeExtent = GetExtent(source->Volume);
+  Careless careless;
+  careless.Subject.Filter->SetReferenceConnection(source->GetOutputPort());
+  source->AnnounceTimes(0.0, 0.0); // one time, as vtkForceTime announces it
+  careless.Subject.Update();
+  EXPECT_EQ(careless.Subject.TakeWarning(), "");
+  source->AnnounceTimes(0.0, 1.0);
+  careless.Subject.Filter->UpdateTimeStep(0.0);
+  EXPECT_TRUE(HasPart(careless.Subject.TakeWarning(), "reference image on input port 3 varies"));
+  careless.Mesh->Modified();
+  careless.Subject.Filter->UpdateTimeStep(1.0);
+  EXPECT_EQ(careless.Subject.TakeWarning(), "");
+  EXPECT_EQ(GetPoint(careless.Subject.Filter->GetOutput(), 0), glm::dvec3(20.0, 0.0, 5.0));
+  EXPECT_EQ(careless.Subject.TakeErrors(), 0);
+}
+
 TEST(DeformAnnouncements, Extents)
 {
   Careless careless;
