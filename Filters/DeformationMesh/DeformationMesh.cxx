@@ -44,6 +44,17 @@ std::pair<std::size_t, vtkIdType> FindNode(const MeshParts& parts, vtkIdType nod
     vtkDataSetAttributes::GhostArrayName() + ", so that these cells are left out.");
 }
 
+std::string ListPointArrays(vtkPointData* pointData)
+{
+  std::string names;
+  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  {
+    const char* name = pointData->GetArrayName(i);
+    names += (i == 0 ? "Its point arrays: \"" : ", \"") + std::string(name ? name : "") + "\"";
+  }
+  return names.empty() ? "It has no point arrays. " : names + ". ";
+}
+
 void MarkMissing(vtkIdType first, vtkIdType count, const VectorTaker& take, NodeFaults& faults)
 {
   const std::array<glm::dvec3, 512> zeros{};
@@ -154,8 +165,8 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
       : ".";
     std::string what = name;
     what.front() = static_cast<char>(std::toupper(what.front()));
-    throw Error(what + " has no " + wanted +
-      ". Choose the displacements with SetInputArrayToProcess()" + alternative);
+    throw Error(what + " has no " + wanted + ". " + ListPointArrays(dataSet->GetPointData()) +
+      "Choose the displacements with SetInputArrayToProcess()" + alternative);
   }
   if (array->GetNumberOfComponents() != 3)
   {

@@ -2,6 +2,7 @@
 // The part of Deformation for vectors on a device.
 #include "Deformation.h"
 
+#include "FieldReading.h"
 #include "VectorConversion.h"
 
 #include "vtkDeviceVectorArray.h"
@@ -68,7 +69,7 @@ void Deformation::BringToHost()
         this->CheckFaults({}, this->VectorsSource);
         return;
       }
-      ReadVectors(this->ArrayOnDevice, take, "Vector", "displacement field");
+      ReadFieldVectors(this->ArrayOnDevice, {}, take);
       if (this->Faults.MayHaveAny())
       {
         ThrowTooFar();

@@ -14,6 +14,7 @@
 #include "vtkPointData.h"
 
 #include <atomic>
+#include <limits>
 #include <string>
 
 namespace deformvolume
@@ -53,15 +54,10 @@ std::vector<unsigned char> FindHiddenPoints(vtkImageData* image)
 void ReadFieldVectors(
   vtkDataArray* array, const std::vector<unsigned char>& undefined, const VectorTaker& take)
 {
-  if (undefined.empty())
+  VectorTaker takeDefined = take;
+  if (!undefined.empty())
   {
-    ReadVectors(array, take, "Vector", FIELD);
-    return;
-  }
-  std::atomic<vtkIdType> fault{ -1 };
-  ReadVectors(
-    array,
-    [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
+    takeDefined = [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType count)
     {
       std::vector<glm::dvec3> defined(vectors, vectors + count);
       for (vtkIdType i = 0; i < count; ++i)
@@ -69,16 +65,20 @@ void ReadFieldVectors(
         defined[i] *= undefined[first + i] ? 0.0 : 1.0;
       }
       take(first, defined.data(), count);
-    },
-    "Vector", FIELD, nullptr,
+    };
+  }
+  constexpr vtkIdType none = std::numeric_limits<vtkIdType>::max();
+  std::atomic<vtkIdType> fault{ none }; // the first one
+  ReadVectors(array, takeDefined, "Vector", FIELD, nullptr,
     [&](vtkIdType point)
     {
-      if (!undefined[point])
+      vtkIdType first = fault;
+      while ((undefined.empty() || !undefined[point]) && point < first &&
+        !fault.compare_exchange_weak(first, point))
       {
-        fault = point;
       }
     });
-  if (fault >= 0)
+  if (fault != none)
   {
     throw Error("Vector " + std::to_string(fault) + " of the " + FIELD +
       " is not finite. Remove NaN and infinity from it, or mark its point as hidden in " +

@@ -76,8 +76,8 @@ TEST(CutVolume, Misuse)
   cut.Filter->SetDeformationData(mesh);
   // The message must not name ports of vtkDeformVolumeFilter.
   cut.Fails(
-    "The deformation mesh has no active Vectors of its points. Choose the displacements with "
-    "SetInputArrayToProcess(),");
+    "The deformation mesh has no active Vectors of its points. It has no point arrays. Choose the "
+    "displacements with SetInputArrayToProcess(),");
   SetDisplacements(mesh, Shift(0, 0, 0));
   mesh->Modified();
   cut.Filter->SetRestData(MakeMesh(volume, 4));

@@ -262,7 +262,7 @@ TEST(DeformGeometryFilter, Misuse)
   misuse.Expect("Point 6 of the deformation mesh is not finite");
 
   filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "none");
-  misuse.Expect("no point array \"none\"");
+  misuse.Expect("no point array \"none\". Its point arrays: \"displacement\". Choose");
   filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "none");
   misuse.Expect("not chosen among the arrays of points");
   filter->SetInputArrayToProcess(0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "none");
@@ -299,7 +299,9 @@ TEST(DeformGeometryFilter, Misuse)
 
   field->GetPointData()->GetVectors()->SetComponent(9, 0, nan);
   filter->SetDeformationData(field);
-  misuse.Expect("Vector 9 of the displacement field is not finite");
+  misuse.Expect(
+    "Vector 9 of the displacement field is not finite. Remove NaN and infinity from it, "
+    "or mark its point as hidden in vtkGhostType.");
 }
 
 TEST(DeformGeometryFilter, Missing)
