@@ -54,6 +54,10 @@ if (DEFORMVOLUME_BUILD_EXAMPLES OR BUILD_TESTING)
   if (NOT DEFORMVOLUME_USE_PARAVIEW)
     list(APPEND deformvolume_vtk_components RenderingImage) # for deform-interactive
   endif ()
+elseif (DEFORMVOLUME_USE_PARAVIEW)
+  # ParaView brings all targets of its VTK. Some link to X11, GLEW and FreeType, which only these
+  # components find.
+  list(APPEND deformvolume_vtk_components RenderingFreeType RenderingOpenGL2)
 endif ()
 if (BUILD_TESTING)
   list(APPEND deformvolume_vtk_components
