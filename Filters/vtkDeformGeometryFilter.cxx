@@ -525,6 +525,7 @@ int vtkDeformGeometryFilter::RequestData(
     [&]
     {
       const deformvolume::Ranks ranks;
+      ranks.Attempt([&] { deformvolume::CheckTimes(3, input, outInfo); });
       vtkDataObject* shape = vtkDataObject::GetData(input[1]);
       this->Internals->ReadDeformation(ranks, shape, vtkDataObject::GetData(input[2]));
       ranks.Attempt([&] { this->Internals->MoveAll(points, output); });

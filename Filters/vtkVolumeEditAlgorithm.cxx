@@ -258,6 +258,7 @@ int vtkVolumeEditAlgorithm::RequestData(
     "The memory of this machine does not suffice for the edits. Use a smaller volume.",
     [&]
     {
+      deformvolume::CheckTimes(4, input, output->GetInformationObject(0));
       deformvolume::CheckDisplacementScale(this->DisplacementScale);
       this->UpdateEdits(input);
       this->Edits->Tool.Finish();

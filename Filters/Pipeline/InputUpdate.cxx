@@ -414,11 +414,10 @@ void CheckTimes(int ports, vtkInformationVector** input, vtkInformation* output)
     {
       std::ostringstream text;
       text << "The source on input port " << port << " was asked for the time " << time
-           << ", but another input of this filter comes from the same source and has asked for the "
-              "time "
+           << ", but another filter has asked it for the time "
            << info->Get(Pipeline::UPDATE_TIME_STEP())
            << ". A source gives one time in each update. Use vtkForceTime (Force Time in ParaView) "
-              "for the input of a fixed time, or read the file a second time.";
+              "where the time is fixed, or read the file a second time.";
       throw Error(text.str());
     }
   }

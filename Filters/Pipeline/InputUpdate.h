@@ -82,7 +82,7 @@ std::vector<double> GetTimes(vtkInformation* input);
 void MergeTimes(vtkAlgorithm* filter, int ports, vtkInformation* output);
 
 /// Throws an Error if the source of one of the first ports has been asked for another time than the
-/// output: another input has the same source, and has requested that time.
+/// output: the source is also upstream of another input, which needs that time.
 void CheckTimes(int ports, vtkInformationVector** input, vtkInformation* output);
 
 /// Sets the time step of the output data to the requested one, or else to that of the first input

@@ -4,6 +4,9 @@
 // step.
 #include "TimedDeformation.h"
 
+#include "vtkCutVolume.h"
+#include "vtkDeformGeometryFilter.h"
+
 #include <vtkForceTime.h>
 #include <vtkImageShiftScale.h>
 #include <vtkInformation.h>
@@ -154,8 +157,8 @@ TEST(DeformTime, RestFromSameSource)
   deformed.Filter->UpdateTimeStep(3.0);
   EXPECT_EQ(deformed.TakeErrors(), 1);
   EXPECT_TRUE(HasPart(deformed.LastError,
-    "The source on input port 1 was asked for the time 3, but another input of this filter comes "
-    "from the same source and has asked for the time 2."));
+    "The source on input port 1 was asked for the time 3, but another filter has asked it for the "
+    "time 2."));
   EXPECT_TRUE(HasPart(deformed.LastError, "vtkForceTime"));
   EXPECT_EQ(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
 
@@ -176,4 +179,25 @@ TEST(DeformTime, RestFromSameSource)
   deformed.Filter->SetDeformationConnection(still->GetOutputPort());
   deformed.Filter->SetRestConnection(later->GetOutputPort());
   check(2.0, 0, 0, 9);
+}
+
+// Cuts and points have the same error.
+TEST(DeformTime, OtherFiltersOfSameSource)
+{
+  TimedDeformation deformed([](double time) { return time; });
+  const auto check = [&](auto& observed, vtkDataObject* input)
+  {
+    vtkNew<vtkTemporalShiftScale> later;
+    later->SetInputConnection(deformed.Lattice->GetOutputPort());
+    later->SetPreShift(1.0);
+    observed.Filter->SetInputData(input);
+    observed.Filter->SetDeformationConnection(deformed.Lattice->GetOutputPort());
+    observed.Filter->SetRestConnection(later->GetOutputPort());
+    observed.Filter->UpdateTimeStep(3.0);
+    EXPECT_TRUE(HasPart(observed.Observer->GetErrorMessage(), "was asked for the time 3, but"));
+  };
+  Observed<vtkCutVolume> cut;
+  check(cut, deformed.Volume);
+  Observed<vtkDeformGeometryFilter> points;
+  check(points, MakeMesh(deformed.Volume));
 }
