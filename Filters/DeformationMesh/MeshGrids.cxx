@@ -3,14 +3,13 @@
 
 #include "DeformationSource.h"
 #include "MaskArray.h"
+#include "MeshStamp.h"
 #include "ParallelFor.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
-#include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkExplicitStructuredGrid.h"
 #include "vtkImageData.h"
@@ -65,12 +64,6 @@ bool IsGrid(vtkDataObject* object)
 {
   return vtkUnstructuredGrid::SafeDownCast(object) || vtkStructuredGrid::SafeDownCast(object) ||
     vtkRectilinearGrid::SafeDownCast(object) || vtkExplicitStructuredGrid::SafeDownCast(object);
-}
-
-void AddArray(Stamp& stamp, vtkAbstractArray* array)
-{
-  stamp.emplace_back(array, array ? array->GetMTime() : 0);
-  stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
 }
 
 // Adds all cells of a grid, except those that are hidden or duplicate, or have a hidden point.
@@ -197,10 +190,10 @@ void MeshGrids::Update(Conversion& conversion, vtkDataSet* source, bool made)
   {
     cells.emplace_back(nullptr, static_cast<vtkMTimeType>(size));
   }
-  const char* const ghosts = vtkDataSetAttributes::GhostArrayName();
-  AddArray(cells, source->GetCellData()->GetAbstractArray(ghosts));
-  AddArray(cells, source->GetPointData()->GetAbstractArray(ghosts));
-  AddArray(cells, source->GetPointData()->GetAbstractArray(ValidPointMaskName));
+  for (vtkAbstractArray* mask : FindMasks(source))
+  {
+    AddArray(cells, mask);
+  }
   if (straight)
   {
     AddArray(points, straight->GetXCoordinates());

@@ -8,6 +8,7 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -18,9 +19,6 @@
 namespace deformvolume
 {
 
-namespace
-{
-
 void AddArray(Stamp& stamp, vtkAbstractArray* array)
 {
   stamp.emplace_back(array, array ? array->GetMTime() : 0);
@@ -28,9 +26,7 @@ void AddArray(Stamp& stamp, vtkAbstractArray* array)
   stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
 }
 
-} // namespace
-
-std::array<vtkAbstractArray*, 3> FindMasks(vtkUnstructuredGrid* grid)
+std::array<vtkAbstractArray*, 3> FindMasks(vtkDataSet* grid)
 {
   const char* ghosts = vtkDataSetAttributes::GhostArrayName();
   return { { grid->GetCellData()->GetAbstractArray(ghosts),

@@ -8,12 +8,16 @@
 #include <vector>
 
 class vtkAbstractArray;
+class vtkDataSet;
 
 namespace deformvolume
 {
 
+/// Adds an array to a stamp, with its modification time and size. It may be null.
+void AddArray(Stamp& stamp, vtkAbstractArray* array);
+
 /// The arrays that mark cells as SkippedCells; null for those that do not exist.
-std::array<vtkAbstractArray*, 3> FindMasks(vtkUnstructuredGrid* grid);
+std::array<vtkAbstractArray*, 3> FindMasks(vtkDataSet* grid);
 
 /// Stamp of the arrays of a grid's cells without the connectivity: arrays, modification times and
 /// sizes.

@@ -37,7 +37,7 @@ vtkIdType CountEdges(vtkPolyData* surface, bool boundary, bool nonManifold)
 
 // Whether all points lie in one plane: the oriented bounding box is thinner than 1e-6 of its
 // length.
-bool IsFlat(vtkPolyData* surface)
+bool LiesInPlane(vtkPolyData* surface)
 {
   // vtkOBBTree has absolute tolerances, and finds infinite boxes for points that are far apart.
   if (!(surface->GetLength() > 0.0))
@@ -127,7 +127,7 @@ void CheckClosedSurface(vtkPolyData* surface)
   {
     throw Error("The surface is empty: it has no polygons.");
   }
-  if (IsFlat(surface))
+  if (LiesInPlane(surface))
   {
     throw Error("The surface is flat: all its points lie in one plane, so it encloses nothing.");
   }
