@@ -10,7 +10,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 using deformvolume::Error;
@@ -39,34 +38,6 @@ void CheckReference(const ImageGeometry& geometry)
   }
 }
 
-// Whether all ranks have the same grid. Collective.
-bool AreEqual(const deformvolume::Ranks& ranks, const ImageGeometry& grid)
-{
-  std::vector<double> numbers(grid.PointExtent.begin(), grid.PointExtent.end());
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    numbers.insert(numbers.end(), { grid.Origin[axis], grid.Spacing[axis] });
-    for (int row = 0; row < 3; ++row)
-    {
-      numbers.push_back(grid.Direction[axis][row]);
-    }
-  }
-  bool areEqual = true;
-  for (const double number : numbers)
-  {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &number, sizeof(bits));
-    areEqual = ranks.AreEqual(bits) && areEqual;
-  }
-  return areEqual;
-}
-
-[[noreturn]] void ThrowDifferentReferences()
-{
-  throw Error("The reference image on input port 3 has different grids on different ranks. Connect "
-              "a source that announces the same grid on all.");
-}
-
 } // namespace
 
 //------------------------------------------------------------------------------
@@ -93,15 +64,14 @@ void vtkDeformVolumeFilter::vtkInternals::ReadReference(
     });
   if (!ranks.AreEqual(info ? 1 : 0))
   {
-    ThrowDifferentReferences();
+    throw Error(
+      "The reference image on input port 3 is connected on some ranks only. Connect it on "
+      "all ranks or on none.");
   }
   const ImageGeometry& geometry =
     this->ReferenceGeometry.Find(this->Self, ReferencePort, output, ranks);
   ranks.Attempt([&] { CheckReference(geometry); });
-  if (!AreEqual(ranks, geometry))
-  {
-    ThrowDifferentReferences();
-  }
+  this->ReferenceGeometry.CheckRanks(ranks, "The reference image on input port 3");
   this->Reference = geometry;
   if (this->Reference != last)
   {

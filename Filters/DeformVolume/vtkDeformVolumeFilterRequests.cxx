@@ -179,10 +179,12 @@ int vtkDeformVolumeFilter::RequestInformation(
     });
   this->Internals->ReadReference(ranks, outInfo);
   volume = this->Internals->VolumeGeometry.Find(this, 0, outInfo, ranks);
+  ranks.Attempt([&] { deformvolume::CheckVolume(volume); });
+  // With different grids the pieces of the ranks would be pieces of different outputs.
+  this->Internals->VolumeGeometry.CheckRanks(ranks, "The volume on input port 0");
   ranks.Attempt(
     [&]
     {
-      deformvolume::CheckVolume(volume);
       volume = this->Internals->GetCoarseGeometry(volume);
       outputGeometry = this->Internals->GetOutputGeometry(volume);
       // The device is checked here, because ParaView's views report errors of their own if

@@ -3,6 +3,7 @@
 
 #include "CellReader.h"
 #include "CoincidentPoints.h"
+#include "Hash.h"
 #include "MeshCells.h"
 #include "MeshStamp.h"
 #include "RestMesh.h"
@@ -43,30 +44,6 @@ Stamp GetPieceStamp(const DeformationSource& source)
   stamp.emplace_back(source.Shape, 0);
   stamp.emplace_back(source.Rest, 0);
   return stamp;
-}
-
-// A variant of the FNV-1a hash that takes eight bytes at a time.
-void AddToHash(std::uint64_t& hash, const void* data, std::size_t bytes)
-{
-  const auto* next = static_cast<const char*>(data);
-  for (; bytes > 0;)
-  {
-    std::uint64_t word = 0;
-    const std::size_t size = std::min<std::size_t>(bytes, sizeof(word));
-    std::memcpy(&word, next, size);
-    hash = (hash ^ word) * 1099511628211U;
-    hash ^= hash >> 29;
-    next += size;
-    bytes -= size;
-  }
-}
-
-template <typename T>
-void AddToHash(std::uint64_t& hash, const std::vector<T>& values)
-{
-  const std::uint64_t size = values.size();
-  AddToHash(hash, &size, sizeof(size));
-  AddToHash(hash, values.data(), values.size() * sizeof(T));
 }
 
 template <typename T>
@@ -273,7 +250,7 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
         }
         piece = this->Read(source, areSplit ? &places : nullptr);
       });
-    std::uint64_t hash = 14695981039346656037U;
+    std::uint64_t hash = HashOfNothing;
     AddToHash(hash, piece.Tetrahedra);
     AddToHash(hash, piece.Derived.Nodes);
     AddToHash(hash, piece.Derived.Weights);

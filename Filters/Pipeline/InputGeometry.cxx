@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "InputGeometry.h"
 
+#include "Hash.h"
 #include "InputUpdate.h"
 #include "PipelineGeometry.h"
 
@@ -11,6 +12,7 @@
 #include "vtkInformationDoubleVectorKey.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace deformvolume
 {
@@ -51,6 +53,32 @@ const ImageGeometry& InputGeometry::Find(
   }
   this->Stamp = stamp;
   return this->Geometry;
+}
+
+void InputGeometry::CheckRanks(const Ranks& ranks, const std::string& what) const
+{
+  const ImageGeometry& grid = this->Geometry;
+  std::vector<double> numbers(grid.PointExtent.begin(), grid.PointExtent.end());
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    numbers.insert(numbers.end(), { grid.Origin[axis], grid.Spacing[axis] });
+    for (int row = 0; row < 3; ++row)
+    {
+      numbers.push_back(grid.Direction[axis][row]);
+    }
+  }
+  for (double& number : numbers)
+  {
+    number += 0.0; // -0.0 becomes 0.0, which equals it
+  }
+  std::uint64_t hash = HashOfNothing;
+  AddToHash(hash, numbers);
+  if (!ranks.AreEqual(hash))
+  {
+    throw Error(what +
+      " has different grids on different ranks. Connect a source that announces the same whole "
+      "extent, origin, spacing and direction on all, such as a reader of one .pvti file.");
+  }
 }
 
 } // namespace deformvolume

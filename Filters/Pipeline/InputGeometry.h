@@ -7,6 +7,7 @@
 
 #include "vtkType.h"
 
+#include <string>
 #include <utility>
 
 class vtkAlgorithm;
@@ -30,6 +31,10 @@ public:
 
   /// Returns the last result of Find().
   const ImageGeometry& Get() const { return this->Geometry; }
+
+  /// Throws an Error on all ranks unless Find() has returned the same geometry on all. what: names
+  /// the image at the beginning of the message. Collective.
+  void CheckRanks(const Ranks& ranks, const std::string& what) const;
 
 private:
   ImageGeometry Geometry;

@@ -221,7 +221,7 @@ void TestReferenceErrors(const Case& from, vtkImageData* whole)
     return;
   }
   TestError(
-    from, whole, "different grids on different ranks",
+    from, whole, "is connected on some ranks only",
     [](Parallel& parallel) { parallel.Filter->SetReferenceData(nullptr); }, restore);
   TestError(
     from, whole, "different grids on different ranks",
@@ -233,6 +233,39 @@ void TestReferenceErrors(const Case& from, vtkImageData* whole)
       parallel.Filter->SetReferenceData(shifted);
     },
     restore);
+}
+
+/// Tests that a source which announces another volume on the last rank is an error on all ranks:
+/// each rank would make a piece of another output.
+void TestVolumeErrors(const Case& from, vtkImageData* whole)
+{
+  const auto test = [&](const std::function<void(vtkImageData*)>& change)
+  {
+    TestError(
+      from, whole, "volume on input port 0 has different grids on different ranks",
+      [&](Parallel& parallel)
+      {
+        vtkNew<vtkImageData> other;
+        other->ShallowCopy(from.Volume);
+        change(other);
+        parallel.Source->SetVolume(other);
+      },
+      [&](Parallel& parallel) { parallel.Source->SetVolume(from.Volume); });
+  };
+  test(
+    [](vtkImageData* other)
+    {
+      const Extent slab{ { -9, 62, 3, 29, -15, 2 } };
+      other->Crop(slab.data());
+    });
+  test([](vtkImageData* other) { other->SetOrigin(3.0, -2.0, 1.0 + 1e-9); });
+  test([](vtkImageData* other) { other->SetSpacing(1.0, 1.0, 1.5); });
+  test(
+    [](vtkImageData* other)
+    {
+      const double direction[9] = { 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0 };
+      other->SetDirectionMatrix(direction);
+    });
 }
 
 /// Tests an output that is background only: each rank that has a piece warns once.
@@ -542,6 +575,10 @@ void TestAll()
       Check(noParts, whole, "Source without parts");
       TestSpread(from, whole);
       TestErrors(from, whole);
+      if (GetRanks() > 1)
+      {
+        TestVolumeErrors(from, whole);
+      }
       TestSmallAndMoving(from);
       TestKeptExtent(from);
       TestGeometryFilter(vtkUnstructuredGrid::SafeDownCast(from.Deformation));
