@@ -12,6 +12,7 @@
 #include "ParallelFor.h"
 #include "PipelineExecution.h"
 #include "ProgressReport.h"
+#include "RankSettings.h"
 #include "Ranks.h"
 #include "TransformedArrays.h"
 #include "VTKThreads.h"
@@ -70,6 +71,8 @@ public:
   {
   }
 
+  /// Throws an Error on all ranks if these have different settings or connections. Collective.
+  void CheckSettings(const deformvolume::Ranks& ranks) const;
   /// Updates the map from the data of ports 1 and 2. Collective.
   void ReadDeformation(const deformvolume::Ranks& ranks, vtkDataObject* shape, vtkDataObject* rest);
   /// Moves a point set, or all point sets of a composite dataset.
@@ -107,6 +110,22 @@ private:
   std::string IgnoredBlocks; // a warning, or ""
   std::set<std::string> WarnedOf;
 };
+
+//------------------------------------------------------------------------------
+void vtkDeformGeometryFilter::vtkInternals::CheckSettings(const deformvolume::Ranks& ranks) const
+{
+  deformvolume::RankSettings settings;
+  settings.AddConnection(this->Self, 1, "deformation");
+  settings.AddConnection(this->Self, 2, "rest configuration");
+  settings.Add("Inverse", this->Self->Inverse);
+  settings.Add("DisplacementScale", this->Self->DisplacementScale);
+  settings.Add("PointsAreDeformed", this->Self->PointsAreDeformed);
+  settings.Add("FieldIsInverse", this->Self->FieldIsInverse);
+  settings.Add("OutsideMode", this->Self->OutsideMode);
+  settings.Add("FadeDistance", this->Self->FadeDistance);
+  settings.Add("TransformAllInputVectors", this->Self->TransformAllInputVectors);
+  settings.Check(ranks);
+}
 
 //------------------------------------------------------------------------------
 void vtkDeformGeometryFilter::vtkInternals::ReadDeformation(
@@ -504,7 +523,11 @@ int vtkDeformGeometryFilter::ComputeInputUpdateExtent(
   }
   return this->Internals->Execution.Run(this,
     "There is not enough memory for the inputs. Use smaller ones, or free memory.",
-    [&] { deformvolume::UpdateRequested(this, 3, input, ranks); });
+    [&]
+    {
+      this->Internals->CheckSettings(ranks);
+      deformvolume::UpdateRequested(this, 3, input, ranks);
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -40,6 +40,9 @@ public:
   {
   }
 
+  /// Throws an Error on all ranks if these have different settings or connections. Collective.
+  void CheckSettings(const deformvolume::Ranks& ranks) const;
+
   /// Sets State to the state of SamplingFactor. Throws an Error if SamplingFactor is not 1, 2 or 4.
   void SelectState();
 

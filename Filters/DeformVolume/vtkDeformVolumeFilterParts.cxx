@@ -5,6 +5,7 @@
 
 #include "InputUpdate.h"
 #include "MaskArray.h"
+#include "RankSettings.h"
 
 #include "vtkInformation.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -21,6 +22,51 @@ using deformvolume::Extent;
 using deformvolume::ImageGeometry;
 using deformvolume::Ranks;
 using deformvolume::RestRegions;
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::CheckSettings(const Ranks& ranks) const
+{
+  if (!ranks.AreMany())
+  {
+    return;
+  }
+  const auto join = [](const std::set<std::string>& names)
+  {
+    std::string all;
+    for (const std::string& name : names)
+    {
+      all += name + '\0';
+    }
+    return all;
+  };
+  // Device and MemoryLimit belong to a rank. Incremental and OutputOnDevice change no voxel.
+  deformvolume::RankSettings settings;
+  settings.AddConnection(this->Self, 1, "deformation");
+  settings.AddConnection(this->Self, 2, "rest configuration");
+  settings.AddConnection(this->Self, ReferencePort, "reference image");
+  settings.Add("DisplacementScale", this->Self->DisplacementScale);
+  settings.Add("PointsAreDeformed", this->Self->PointsAreDeformed);
+  settings.Add("FieldIsInverse", this->Self->FieldIsInverse);
+  settings.Add("OutputBoundsMode", this->Self->OutputBoundsMode);
+  settings.Add("CustomBounds", this->Self->CustomBounds);
+  settings.Add("Padding", this->Self->Padding);
+  settings.Add("BoundsGranularity", this->Self->BoundsGranularity);
+  settings.Add("OutputSpacingMode", this->Self->OutputSpacingMode);
+  settings.Add("CustomSpacing", this->Self->CustomSpacing);
+  settings.Add("SamplingFactor", this->Self->SamplingFactor);
+  settings.Add("BackgroundValue", this->Self->BackgroundValue);
+  settings.Add("OutsideMode", this->Self->OutsideMode);
+  settings.Add("FadeDistance", this->Self->FadeDistance);
+  settings.Add("Resampler", this->Self->Resampler);
+  settings.Add("Interpolation", this->Self->Interpolation);
+  settings.Add("GenerateRestPositions", this->Self->GenerateRestPositions);
+  settings.Add("GenerateJacobian", this->Self->GenerateJacobian);
+  settings.Add("GenerateFoldCount", this->Self->GenerateFoldCount);
+  settings.Add("OpenSplits", this->Self->OpenSplits);
+  settings.Add("The list of categorical arrays", join(this->CategoricalArrays));
+  settings.Add("The list of density arrays", join(this->DensityArrays));
+  settings.Check(ranks);
+}
 
 //------------------------------------------------------------------------------
 DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(

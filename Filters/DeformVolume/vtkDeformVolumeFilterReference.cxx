@@ -49,25 +49,19 @@ void vtkDeformVolumeFilter::vtkInternals::ReadReference(
   vtkInformation* info = this->Self->GetNumberOfInputConnections(ReferencePort) > 0
     ? this->Self->GetInputInformation(ReferencePort, 0)
     : nullptr;
-  if (!ranks.IsAny(info != nullptr))
+  if (!info)
   {
-    return;
+    return; // on all ranks
   }
   ranks.Attempt(
     [&]
     {
-      if (info && !info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+      if (!info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
       {
         throw Error("The reference image on input port 3 announces no whole extent. Connect a "
                     "vtkImageData; from a composite dataset, extract one block.");
       }
     });
-  if (!ranks.AreEqual(info ? 1 : 0))
-  {
-    throw Error(
-      "The reference image on input port 3 is connected on some ranks only. Connect it on "
-      "all ranks or on none.");
-  }
   const ImageGeometry& geometry =
     this->ReferenceGeometry.Find(this->Self, ReferencePort, output, ranks);
   ranks.Attempt([&] { CheckReference(geometry); });

@@ -164,6 +164,7 @@ int vtkDeformVolumeFilter::RequestInformation(
   {
     ranks.GetNeighbors(); // has to be called before a device is selected
   }
+  this->Internals->CheckSettings(ranks);
   vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
   ImageGeometry volume;
   ImageGeometry outputGeometry;

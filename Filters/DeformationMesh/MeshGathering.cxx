@@ -231,7 +231,6 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
     return source;
   }
   const Stamp stamp = GetPieceStamp(source);
-  const bool withRest = ranks.IsAny(source.Rest != nullptr);
   if (ranks.IsAny(stamp != this->PieceStamp || source.Choice != this->Choice))
   {
     this->PieceStamp.clear();
@@ -240,16 +239,7 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
     const std::vector<std::int32_t> places =
       areSplit ? FindPlaces(ranks, rest) : std::vector<std::int32_t>();
     Piece piece;
-    ranks.Attempt(
-      [&]
-      {
-        if (withRest && !source.Rest && GetNumberOfNodes(source.ShapeParts) > 0)
-        {
-          throw Error("A rank has a part of the deformation mesh, but no rest configuration, "
-                      "which other ranks have. Connect one on all ranks or on none.");
-        }
-        piece = this->Read(source, areSplit ? &places : nullptr);
-      });
+    ranks.Attempt([&] { piece = this->Read(source, areSplit ? &places : nullptr); });
     std::uint64_t hash = HashOfNothing;
     AddToHash(hash, piece.Tetrahedra);
     AddToHash(hash, piece.Derived.Nodes);
@@ -293,7 +283,7 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
       GatherVector(ranks, piece.RestPoints, MESH_NAME);
       GatherVector(ranks, piece.Vectors, MESH_NAME);
     }
-    ranks.Attempt([&] { this->Make(piece, withRest); });
+    ranks.Attempt([&] { this->Make(piece, source.Rest != nullptr); });
     this->Derived = std::move(piece.Derived);
     this->PieceStamp = stamp;
     this->Choice = source.Choice;

@@ -235,6 +235,47 @@ void TestReferenceErrors(const Case& from, vtkImageData* whole)
     restore);
 }
 
+/// Tests that a setting or a connection of the last rank that differs is an error on all ranks.
+void TestSettings(const Case& from, vtkImageData* whole)
+{
+  using Filter = vtkDeformVolumeFilter;
+  const auto test = [&](const std::string& words, const std::function<void(Filter*)>& spoil,
+                      const std::function<void(Filter*)>& restore)
+  {
+    TestError(
+      from, whole, words, [&](Parallel& parallel) { spoil(parallel.Filter); },
+      [&](Parallel& parallel)
+      {
+        restore(parallel.Filter);
+        parallel.Filter->Modified(); // on all ranks
+      });
+  };
+  test(
+    "deformation on input port 1 is connected on some ranks only",
+    [](Filter* filter) { filter->SetDeformationData(nullptr); },
+    [&](Filter* filter) { filter->SetDeformationData(from.Deformation); });
+  test(
+    "rest configuration on input port 2 is connected on some ranks only",
+    [&](Filter* filter) { filter->SetRestData(from.Deformation); },
+    [](Filter* filter) { filter->SetRestData(nullptr); });
+  test(
+    "OutputBoundsMode is not the same on all ranks",
+    [](Filter* filter) { filter->SetOutputBoundsModeToVolumeBounds(); },
+    [](Filter* filter) { filter->SetOutputBoundsModeToDeformedBounds(); });
+  test(
+    "CustomBounds is not the same on all ranks",
+    [](Filter* filter) { filter->SetCustomBounds(-1.0, 1.0, -1.0, 1.0, -1.0, 1.0 + 1e-15); },
+    [](Filter* filter) { filter->SetCustomBounds(-1.0, 1.0, -1.0, 1.0, -1.0, 1.0); });
+  test(
+    "GenerateJacobian is not the same on all ranks",
+    [](Filter* filter) { filter->GenerateJacobianOn(); },
+    [](Filter* filter) { filter->GenerateJacobianOff(); });
+  test(
+    "list of density arrays is not the same on all ranks",
+    [](Filter* filter) { filter->AddDensityArray("double"); },
+    [](Filter* filter) { filter->ClearDensityArrays(); });
+}
+
 /// Tests that a source which announces another volume on the last rank is an error on all ranks:
 /// each rank would make a piece of another output.
 void TestVolumeErrors(const Case& from, vtkImageData* whole)
@@ -404,6 +445,36 @@ void TestKeptExtent(const Case& from)
       });
     Check(moving, image, "Kept extent");
   }
+}
+
+/// Tests that a setting or a connection of vtkDeformGeometryFilter on the last rank that differs is
+/// an error on all ranks.
+void TestGeometrySettings(vtkUnstructuredGrid* mesh)
+{
+  const bool isLast = GetRank() + 1 == GetRanks();
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(mesh->GetCenter());
+  vtkNew<vtkPolyData> input;
+  input->SetPoints(points);
+  vtkNew<vtkDeformGeometryFilter> filter;
+  vtkNew<vtkTest::ErrorObserver> observer;
+  filter->AddObserver(vtkCommand::ErrorEvent, observer);
+  filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+  filter->SetInputData(input);
+  const auto update = [&]
+  {
+    observer->Clear();
+    filter->Modified(); // on all ranks
+    filter->UpdatePiece(GetRank(), GetRanks(), 0);
+    return observer->GetErrorMessage();
+  };
+  filter->SetDeformationData(isLast ? nullptr : mesh);
+  EXPECT_TRUE(HasPart(update(), "deformation on input port 1 is connected on some ranks only"));
+  filter->SetDeformationData(mesh);
+  filter->SetInverse(isLast);
+  EXPECT_TRUE(HasPart(update(), "Inverse is not the same on all ranks"));
+  filter->SetInverse(false);
+  EXPECT_EQ(update(), "");
 }
 
 /// Tests vtkDeformGeometryFilter: each rank moves its own points as one process does, whichever
@@ -577,6 +648,8 @@ void TestAll()
       TestErrors(from, whole);
       if (GetRanks() > 1)
       {
+        TestSettings(from, whole);
+        TestGeometrySettings(vtkUnstructuredGrid::SafeDownCast(from.Deformation));
         TestVolumeErrors(from, whole);
       }
       TestSmallAndMoving(from);
