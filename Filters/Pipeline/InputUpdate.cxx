@@ -82,9 +82,7 @@ vtkDataObject* Update(vtkAlgorithm* filter, int port, vtkInformation* request, c
       if (!done)
       {
         throw Error(std::string("The source of the ") + names[port] + " on input port " +
-          std::to_string(port) + " failed" +
-          (ranks.AreMany() ? " on rank " + std::to_string(ranks.GetRank()) : "") +
-          ". Correct the error that the source reports.");
+          std::to_string(port) + " failed. Correct the error that the source reports.");
       }
     });
   return source->GetProducer()->GetOutputDataObject(source->GetIndex());

@@ -2,6 +2,7 @@
 #include "Ranks.h"
 
 #include "Device.h"
+#include "Hash.h"
 
 #include "vtkCommunicator.h"
 #include "vtkMultiProcessController.h"
@@ -151,6 +152,10 @@ void Ranks::Agree(Outcome outcome, const std::string& message) const
   std::vector<char> text(message.begin(), message.end());
   text.resize(static_cast<std::size_t>(length) + 1, '\0');
   this->Controller->Broadcast(text.data(), length + 1, rank);
+  // Numbers in the message, such as that of a point, may be those of the rank.
+  std::uint64_t hash = HashOfNothing;
+  AddToHash(hash, message.data(), message.size());
+  const bool isOfAll = this->AreEqual(hash); // ranks that have not failed have no message
   switch (static_cast<Outcome>(*first))
   {
     case Outcome::Aborted:
@@ -158,7 +163,8 @@ void Ranks::Agree(Outcome outcome, const std::string& message) const
     case Outcome::OutOfMemory:
       throw std::bad_alloc();
     default:
-      throw Error(text.data());
+      throw Error(
+        text.data() + (isOfAll ? std::string() : " (On rank " + std::to_string(rank) + ".)"));
   }
 }
 

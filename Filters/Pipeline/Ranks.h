@@ -43,6 +43,7 @@ public:
 
   /// Calls a function, which must not call collective functions. If it throws on any rank, all
   /// ranks throw the exception of the first of these ranks, as an Error, Aborted or std::bad_alloc.
+  /// The Error names this rank, unless all ranks have the same one.
   template <typename Function>
   void Attempt(Function&& function) const
   {

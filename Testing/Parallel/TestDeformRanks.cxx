@@ -180,9 +180,11 @@ void TestSpread(const Case& from, vtkImageData* whole)
 }
 
 /// Tests that an error which one rank causes is reported on all ranks with the same text, and that
-/// the filter works when the cause is removed.
+/// the filter works when the cause is removed. isOfRank: whether the error is that of this rank,
+/// rather than a difference between ranks.
 void TestError(const Case& from, vtkImageData* whole, const std::string& words,
-  const std::function<void(Parallel&)>& spoil, const std::function<void(Parallel&)>& restore)
+  const std::function<void(Parallel&)>& spoil, const std::function<void(Parallel&)>& restore,
+  bool isOfRank = true)
 {
   Parallel parallel(from);
   if (GetRank() == GetRanks() - 1)
@@ -192,6 +194,9 @@ void TestError(const Case& from, vtkImageData* whole, const std::string& words,
   parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
   EXPECT_EQ(parallel.TakeErrors(), 1);
   EXPECT_TRUE(HasPart(parallel.LastError, words));
+  // An error that belongs to one rank names it.
+  const std::string last = "(On rank " + std::to_string(GetRanks() - 1) + ".)";
+  EXPECT_EQ(parallel.LastError.find(last) != std::string::npos, GetRanks() > 1 && isOfRank);
   EXPECT_EQ(parallel.Filter->GetOutput()->GetNumberOfPoints(), 0);
   restore(parallel);
   Check(parallel, whole, words);
@@ -222,7 +227,7 @@ void TestReferenceErrors(const Case& from, vtkImageData* whole)
   }
   TestError(
     from, whole, "is connected on some ranks only",
-    [](Parallel& parallel) { parallel.Filter->SetReferenceData(nullptr); }, restore);
+    [](Parallel& parallel) { parallel.Filter->SetReferenceData(nullptr); }, restore, false);
   TestError(
     from, whole, "different grids on different ranks",
     [&](Parallel& parallel)
@@ -232,7 +237,7 @@ void TestReferenceErrors(const Case& from, vtkImageData* whole)
       shifted->SetOrigin(0.0, 1e-9, 0.0);
       parallel.Filter->SetReferenceData(shifted);
     },
-    restore);
+    restore, false);
 }
 
 /// Tests that a setting or a connection of the last rank that differs is an error on all ranks.
@@ -248,7 +253,8 @@ void TestSettings(const Case& from, vtkImageData* whole)
       {
         restore(parallel.Filter);
         parallel.Filter->Modified(); // on all ranks
-      });
+      },
+      false);
   };
   test(
     "deformation on input port 1 is connected on some ranks only",
@@ -291,7 +297,7 @@ void TestVolumeErrors(const Case& from, vtkImageData* whole)
         change(other);
         parallel.Source->SetVolume(other);
       },
-      [&](Parallel& parallel) { parallel.Source->SetVolume(from.Volume); });
+      [&](Parallel& parallel) { parallel.Source->SetVolume(from.Volume); }, false);
   };
   test(
     [](vtkImageData* other)

@@ -105,6 +105,8 @@ void TestFailure(Pipeline& pipeline, Source* source, const std::string& words)
   source->SetFails(GetRank() == GetRanks() - 1);
   EXPECT_EQ(update(), 1);
   EXPECT_TRUE(HasPart(pipeline.LastError, words));
+  EXPECT_TRUE(HasPart(
+    pipeline.LastError, "that the source reports. (On rank " + std::to_string(GetRanks() - 1)));
   EXPECT_EQ(pipeline.Filter->GetOutput()->GetNumberOfPoints(), 0);
   source->SetFails(false);
   EXPECT_EQ(update(), 0);
