@@ -154,7 +154,7 @@ void vtkDeformGeometryFilter::vtkInternals::ReadDeformation(
       this->Grids.Find(source);
       this->IgnoredBlocks = deformvolume::DescribeIgnored(source.ShapeParts);
     });
-  source = this->Gathering.Gather(ranks, source);
+  source = this->Gathering.Gather(ranks, source, false);
   ranks.Attempt(
     [&]
     {

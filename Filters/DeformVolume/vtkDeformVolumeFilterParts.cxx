@@ -86,7 +86,8 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
       source.RestIsMade = !deformvolume::IsInMemory(this->Self, 2);
       this->Grids.Find(source);
     });
-  source = this->Gathering.Gather(ranks, source);
+  // Copies of nodes at the borders of pieces are no splits.
+  source = this->Gathering.Gather(ranks, source, this->Self->OpenSplits);
   ranks.Attempt(
     [&]
     {

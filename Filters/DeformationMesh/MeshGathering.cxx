@@ -128,6 +128,41 @@ std::vector<std::int32_t> FindPlaces(const Ranks& ranks, const MeshParts& parts)
   return places;
 }
 
+// Lets tetrahedra of different ranks use the same node where each rank has a copy of it. Copies
+// have the same position at rest and the same vector; nodes with different vectors are a split that
+// has opened. Nodes of one rank are left as they are, as in one process. No node is removed, so
+// that a split which opens later changes tetrahedra only. ranks: the rank of each node.
+void JoinCopies(std::vector<Tetrahedron>& tetrahedra, const std::vector<glm::dvec3>& restPoints,
+  const std::vector<glm::dvec3>& vectors, const std::vector<int>& ranks)
+{
+  const std::vector<std::int32_t> atRest = FindCoincidentPoints(restPoints);
+  const std::vector<std::int32_t> moved = FindCoincidentPoints(vectors);
+  std::vector<glm::dvec3> pairs(ranks.size());
+  for (std::size_t node = 0; node < ranks.size(); ++node)
+  {
+    pairs[node] = glm::dvec3(atRest[node], moved[node], 0.0);
+  }
+  const std::vector<std::int32_t> first = FindCoincidentPoints(pairs);
+  std::vector<unsigned char> isShared(ranks.size(), 0);
+  for (std::size_t node = 0; node < ranks.size(); ++node)
+  {
+    const auto other = static_cast<std::size_t>(first[node]);
+    isShared[other] |= ranks[node] != ranks[other] ? 1 : 0;
+  }
+  for (Tetrahedron& tetrahedron : tetrahedra)
+  {
+    for (std::int32_t& node : tetrahedron)
+    {
+      // Derived nodes lie inside a cell, so no other rank has a copy.
+      const auto number = static_cast<std::size_t>(node);
+      if (number < ranks.size() && isShared[static_cast<std::size_t>(first[number])] != 0)
+      {
+        node = first[number];
+      }
+    }
+  }
+}
+
 } // namespace
 
 struct MeshGathering::Piece
@@ -224,14 +259,16 @@ void MeshGathering::Make(const Piece& whole, bool withRest)
   this->Shape->GetPointData()->AddArray(vectors);
 }
 
-DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSource& source)
+DeformationSource MeshGathering::Gather(
+  const Ranks& ranks, const DeformationSource& source, bool joins)
 {
   if (!ranks.AreMany() || ranks.IsAny(vtkImageData::SafeDownCast(source.Shape) != nullptr))
   {
     return source;
   }
   const Stamp stamp = GetPieceStamp(source);
-  if (ranks.IsAny(stamp != this->PieceStamp || source.Choice != this->Choice))
+  if (ranks.IsAny(
+        stamp != this->PieceStamp || source.Choice != this->Choice || joins != this->Joined))
   {
     this->PieceStamp.clear();
     const MeshParts& rest = source.Rest ? source.RestParts : source.ShapeParts;
@@ -282,11 +319,27 @@ DeformationSource MeshGathering::Gather(const Ranks& ranks, const DeformationSou
       GatherVector(ranks, piece.Tetrahedra, MESH_NAME);
       GatherVector(ranks, piece.RestPoints, MESH_NAME);
       GatherVector(ranks, piece.Vectors, MESH_NAME);
+      if (joins)
+      {
+        const std::vector<std::uint64_t> counts = ranks.Gather(mine);
+        ranks.Attempt(
+          [&]
+          {
+            std::vector<int> ranksOfNodes;
+            for (std::size_t rank = 0; rank < counts.size(); ++rank)
+            {
+              ranksOfNodes.insert(
+                ranksOfNodes.end(), static_cast<std::size_t>(counts[rank]), static_cast<int>(rank));
+            }
+            JoinCopies(piece.Tetrahedra, piece.RestPoints, piece.Vectors, ranksOfNodes);
+          });
+      }
     }
     ranks.Attempt([&] { this->Make(piece, source.Rest != nullptr); });
     this->Derived = std::move(piece.Derived);
     this->PieceStamp = stamp;
     this->Choice = source.Choice;
+    this->Joined = joins;
   }
   DeformationSource whole = source;
   whole.Shape = this->Shape;

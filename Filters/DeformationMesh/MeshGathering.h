@@ -26,9 +26,10 @@ class MeshGathering
 {
 public:
   /// Returns a source with the whole mesh. Returns `source` itself if it is a displacement field,
-  /// which every rank has as a whole, or if there is one process. Throws the same Error on all
-  /// ranks. Collective.
-  DeformationSource Gather(const Ranks& ranks, const DeformationSource& source);
+  /// which every rank has as a whole, or if there is one process. joins: whether tetrahedra of
+  /// different ranks use the same node where each rank has a copy of it, with the same position at
+  /// rest and the same displacement. Throws the same Error on all ranks. Collective.
+  DeformationSource Gather(const Ranks& ranks, const DeformationSource& source, bool joins);
 
   /// Describes the cells of this rank's piece that were ignored; "": none were.
   const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
@@ -44,6 +45,7 @@ private:
 
   Stamp PieceStamp; // empty: there is no mesh
   std::string Choice;
+  bool Joined = false; // whether copies of nodes have been joined
   vtkSmartPointer<vtkUnstructuredGrid> Shape;
   vtkSmartPointer<vtkUnstructuredGrid> Rest;
   DerivedNodes

@@ -179,6 +179,94 @@ void TestSpread(const Case& from, vtkImageData* whole)
   }
 }
 
+/// Returns a mesh that is split across x, below the middle of y. amount: how far the split opens.
+vtkSmartPointer<vtkUnstructuredGrid> Split(const Case& from, double amount)
+{
+  auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mesh->DeepCopy(from.Deformation);
+  const glm::dvec3 middle = GetCenter(from.Volume);
+  vtkPoints* points = mesh->GetPoints();
+  vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+  const vtkIdType count = points->GetNumberOfPoints();
+  std::vector<std::vector<vtkIdType>> nodes; // of each cell
+  std::vector<unsigned char> isRight;        // whether a cell is beyond the split
+  std::vector<unsigned char> isLeftNode(count, 0);
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    mesh->GetCellPoints(cell, ids);
+    nodes.emplace_back(ids->begin(), ids->end());
+    double x = 0.0;
+    for (const vtkIdType node : nodes.back())
+    {
+      x += GetPoint(mesh, node).x / static_cast<double>(nodes.back().size());
+    }
+    isRight.push_back(x > middle.x ? 1 : 0);
+    for (const vtkIdType node : nodes.back())
+    {
+      isLeftNode[node] |= isRight.back() == 0 ? 1 : 0;
+    }
+  }
+  std::vector<vtkIdType> twins(count, -1); // of nodes on the right
+  for (std::size_t cell = 0; cell < nodes.size(); ++cell)
+  {
+    for (vtkIdType& node : nodes[cell])
+    {
+      const glm::dvec3 point = GetPoint(mesh, node);
+      if (isRight[cell] == 0 || point.y >= middle.y)
+      {
+        continue;
+      }
+      if (twins[node] < 0)
+      {
+        glm::dvec3 vector;
+        vectors->GetTuple(node, &vector.x);
+        vector.x += amount * (middle.y - point.y);
+        twins[node] = isLeftNode[node] == 0 ? node : points->InsertNextPoint(&point.x);
+        vectors->InsertTuple(twins[node], &vector.x);
+      }
+      node = twins[node];
+    }
+    mesh->GetCells()->ReplaceCellAtId(
+      static_cast<vtkIdType>(cell), static_cast<vtkIdType>(nodes[cell].size()), nodes[cell].data());
+  }
+  EXPECT_GT(points->GetNumberOfPoints(), count);
+  return mesh;
+}
+
+/// Tests that the volume opens at the splits of a mesh, and not at the borders of its pieces, also
+/// if the mesh moves, and if the sides of the split have met.
+void TestSplits(const Case& from)
+{
+  Case open = from;
+  open.Set = [&](vtkDeformVolumeFilter* filter)
+  {
+    from.Set(filter);
+    filter->OpenSplitsOn();
+  };
+  open.Name = "No split";
+  TestSpread(open, MakeWhole(open));
+  open.Name = "Split";
+  Parallel moving(open);
+  for (const double amount : { 0.5, 0.2, 0.0, 0.5 })
+  {
+    const auto mesh = Split(from, amount);
+    open.Deformation = mesh;
+    moving.Filter->SetDeformationData(Distribute(mesh, Spread::Pieces));
+    if (amount == 0.0)
+    {
+      // Nodes that have not moved apart are joined at the borders of pieces.
+      moving.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
+      EXPECT_EQ(moving.TakeErrors(), 0) << moving.LastError;
+      continue;
+    }
+    const auto whole = MakeWhole(open);
+    Check(moving, whole, "Split that moves");
+    TestSpread(open, whole);
+  }
+  EXPECT_LE(GetReported(moving.Filter, "Static mappings made"), 2);
+}
+
 /// Tests that an error which one rank causes is reported on all ranks with the same text, and that
 /// the filter works when the cause is removed. isOfRank: whether the error is that of this rank,
 /// rather than a difference between ranks.
@@ -662,6 +750,7 @@ void TestAll()
       TestKeptExtent(from);
       TestGeometryFilter(vtkUnstructuredGrid::SafeDownCast(from.Deformation));
       TestHexahedra(from);
+      TestSplits(from);
       // Cells with derived nodes.
       Case quadratic = from;
       const auto mesh = MakeTenNodes(vtkUnstructuredGrid::SafeDownCast(from.Deformation));
