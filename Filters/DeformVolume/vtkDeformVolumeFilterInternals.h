@@ -123,6 +123,9 @@ public:
   /// one.
   void WarnOfCut(vtkInformation* output);
 
+  /// Whether a part of the output is requested, and whether the volume can be read in parts for it.
+  bool WantsPart(vtkInformation* output) const;
+  bool CanTakePart(vtkInformation* volumeInfo) const;
   /// The extent of the volume that the requested output needs. This is a part of the volume only if
   /// a part of the output is requested, or the output has custom bounds or a reference image, and
   /// the source of the volume can produce parts. Collective.
@@ -248,8 +251,6 @@ private:
   void UpdateBoundsOfMesh(const deformvolume::VoxelGrid& voxelGrid);
   /// Versions of the deformation: of the shape and of the vectors.
   std::pair<std::uint64_t, std::uint64_t> GetVersions() const;
-  bool WantsPart(vtkInformation* output) const;
-  bool CanTakePart(vtkInformation* volumeInfo) const;
   /// Adds the extent that was needed before for the same part of the output. If the deformation
   /// moves to and fro, the volume is then not read, uploaded and mapped again at each step.
   deformvolume::Extent KeepNeeded(const deformvolume::Extent& needed,
