@@ -146,8 +146,6 @@ private:
   std::map<std::pair<std::string, std::string>, Use> Kernels;
 };
 
-const std::array<double, 3> NoScale{ { 1, 1, 1 } };
-
 /// A volume that is folded in places, and has cells that are large enough to be deferred.
 DeformerCase MakeFolded()
 {

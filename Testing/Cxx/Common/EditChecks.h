@@ -20,6 +20,10 @@
 namespace filterTesting
 {
 
+/// The volumes of most tests of vtkCutVolume and of vtkCarveVolume.
+constexpr Extent CutBox{ { 0, 8, 0, 8, 0, 8 } };
+constexpr Extent CarvedBox{ { -2, 14, 0, 13, 1, 15 } };
+
 inline int CountActive(const std::vector<unsigned char>& mask)
 {
   int count = 0;

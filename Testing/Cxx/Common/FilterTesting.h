@@ -171,6 +171,26 @@ inline void MovePoints(vtkPointSet* mesh, const WorldMap& map)
   mesh->GetPoints()->Modified();
 }
 
+inline glm::dvec3 GetVector(vtkDataSet* dataSet, vtkIdType id)
+{
+  glm::dvec3 vector;
+  dataSet->GetPointData()->GetVectors()->GetTuple(id, &vector.x);
+  return vector;
+}
+
+/// Copies a mesh, and moves its points by their displacements.
+inline vtkSmartPointer<vtkUnstructuredGrid> MoveToDeformed(vtkUnstructuredGrid* mesh)
+{
+  auto moved = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  moved->DeepCopy(mesh);
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 point = GetPoint(mesh, id) + GetVector(mesh, id);
+    moved->GetPoints()->SetPoint(id, &point.x);
+  }
+  return moved;
+}
+
 /// A vtkDeformVolumeFilter under test.
 struct Deformed : Observed<vtkDeformVolumeFilter>
 {

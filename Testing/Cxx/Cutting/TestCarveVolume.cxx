@@ -22,7 +22,6 @@ using namespace filterTesting;
 namespace
 {
 
-const Extent Box{ { -2, 14, 0, 13, 1, 15 } };
 const double Nan = std::numeric_limits<double>::quiet_NaN();
 
 // The volume of the tetrahedra that are switched off, in voxels.
@@ -42,7 +41,7 @@ double GetVolume(const std::vector<unsigned char>& mask)
 TEST(CarveVolume, Misuse)
 {
   Edited<vtkCarveVolume> carve;
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CarvedBox);
   volume->GetPointData()->AddArray(
     MakeArray<vtkShortArray>("pairs", volume->GetNumberOfPoints(), 2));
   volume->GetPointData()->AddArray(MakeArray<vtkShortArray>("short", 5));
@@ -86,7 +85,7 @@ TEST(CarveVolume, Misuse)
   carve.Filter->AddToolPosition(0, Nan, 0);
   carve.Fails("not finite");
   carve.Filter->ClearToolPositions();
-  auto wrong = MakeVolume(Box);
+  auto wrong = MakeVolume(CarvedBox);
   wrong->GetCellData()->AddArray(MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", 7));
   carve.Filter->SetInputData(wrong);
   carve.Fails("\"ActiveTetrahedra\"");
@@ -160,7 +159,7 @@ TEST(CarveVolume, Functions)
     EXPECT_LT(std::abs(last - expected / 8), 0.03 * expected / 8);
   }
   // A box of whole cells, and a plane.
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CarvedBox);
   Edited<vtkCarveVolume> carve;
   carve.Filter->SetInputData(volume);
   vtkNew<vtkBox> box;
@@ -182,7 +181,7 @@ TEST(CarveVolume, Functions)
 
 TEST(CarveVolume, Surfaces)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CarvedBox);
   Edited<vtkCarveVolume> carve;
   carve.Filter->SetInputData(volume);
   // A cube whose faces contain voxels, and whose polygons share no points.
@@ -216,7 +215,7 @@ TEST(CarveVolume, Surfaces)
 
 TEST(CarveVolume, Labels)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CarvedBox);
   auto labels = AddLabels(volume);
   Edited<vtkCarveVolume> carve;
   carve.Filter->SetInputData(volume);
@@ -239,7 +238,7 @@ TEST(CarveVolume, Labels)
 // A tool that carves in several updates or in one, and a tool in a deformed volume.
 TEST(CarveVolume, Tool)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CarvedBox);
   Edited<vtkCarveVolume> steps;
   Edited<vtkCarveVolume> once;
   const double path[4][3] = { { 1, 2, 3 }, { 4, 5, 6 }, { 9, 5, 6 }, { 9, 5, 12 } };
@@ -309,7 +308,7 @@ TEST(CarveVolume, Tool)
 // ghost array of the volume is not changed.
 TEST(CarveVolume, BlankCells)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CarvedBox);
   auto ghosts = MakeArray<vtkUnsignedCharArray>("vtkGhostType", volume->GetNumberOfCells());
   ghosts->FillValue(0);
   ghosts->SetValue(3, vtkDataSetAttributes::DUPLICATECELL);

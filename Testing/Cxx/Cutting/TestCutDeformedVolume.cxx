@@ -12,11 +12,9 @@ using namespace filterTesting;
 namespace
 {
 
-const Extent Box{ { 0, 8, 0, 8, 0, 8 } };
-
 TEST(CutDeformedVolume, Chain)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CutBox);
   Edited<vtkCutVolume> first;
   Edited<vtkCutVolume> second;
   first.Filter->SetInputData(volume);
@@ -37,7 +35,7 @@ TEST(CutDeformedVolume, Chain)
 // A sheet cuts the deformed volume, and the cut stays in the tissue when the deformation changes.
 TEST(CutDeformedVolume, Deformed)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CutBox);
   const double origin[3] = { 5.0, -3.0, 2.0 };
   volume->SetOrigin(origin[0], origin[1], origin[2]);
   volume->SetSpacing(0.5, 2.0, 1.5);
@@ -177,7 +175,7 @@ TEST(CutDeformedVolume, PartsWithoutCells)
     Edited<vtkCutVolume> cut;
     cut.Filter->SetInputConnection(source->GetOutputPort());
     source->UpdateInformation();
-    cut.Filter->SetSheetData(MakePlaneX(MakeVolume(Box), 3.5));
+    cut.Filter->SetSheetData(MakePlaneX(MakeVolume(CutBox), 3.5));
     cut.Filter->UpdateExtent(part.data());
     EXPECT_EQ(cut.Observer->GetErrorMessage(), "");
     EXPECT_EQ(cut.ExecutiveObserver->GetErrorMessage(), "");

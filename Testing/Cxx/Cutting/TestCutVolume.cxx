@@ -16,12 +16,10 @@ using namespace filterTesting;
 namespace
 {
 
-const Extent Box{ { 0, 8, 0, 8, 0, 8 } };
-
 TEST(CutVolume, Misuse)
 {
   Edited<vtkCutVolume> cut;
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CutBox);
   cut.Filter->SetInputData(MakeImage({ { 0, 8, 0, 8, 3, 3 } }));
   cut.Fails("two voxels");
   cut.Filter->SetInputData(volume);
@@ -61,12 +59,12 @@ TEST(CutVolume, Misuse)
   cut.Filter->SetDisplacementScale(1.0);
   for (const int tuples : { 511, 513 })
   {
-    auto other = MakeVolume(Box);
+    auto other = MakeVolume(CutBox);
     other->GetCellData()->AddArray(MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", tuples));
     cut.Filter->SetInputData(other);
     cut.Fails("\"ActiveTetrahedra\"");
   }
-  auto other = MakeVolume(Box);
+  auto other = MakeVolume(CutBox);
   other->GetCellData()->AddArray(MakeArray<vtkShortArray>("ActiveTetrahedra", 512));
   cut.Filter->SetInputData(other);
   cut.Fails("Give it type unsigned char");
@@ -103,7 +101,7 @@ TEST(CutVolume, Geometry)
 {
   for (int geometry = 0; geometry < 4; ++geometry)
   {
-    auto volume = MakeVolume(Box);
+    auto volume = MakeVolume(CutBox);
     if (geometry > 0)
     {
       volume->SetOrigin(-12.3, 7.0, 1e3);
@@ -127,7 +125,7 @@ TEST(CutVolume, Geometry)
   }
   // The parity of cells depends on structured indices: cuts of a part are equal to those of the
   // whole.
-  auto whole = MakeVolume(Box);
+  auto whole = MakeVolume(CutBox);
   auto part = MakeVolume({ { 3, 8, 1, 6, 0, 7 } });
   Edited<vtkCutVolume> cutWhole;
   Edited<vtkCutVolume> cutPart;
@@ -158,7 +156,7 @@ TEST(CutVolume, Geometry)
 // Polygons, strips and swept lines cut like the triangles that they consist of.
 TEST(CutVolume, Sheets)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CutBox);
   Edited<vtkCutVolume> cut;
   cut.Filter->SetInputData(volume);
   vtkNew<vtkPlaneSource> plane;
@@ -221,7 +219,7 @@ TEST(CutVolume, Sheets)
 
 TEST(CutVolume, Edits)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CutBox);
   auto base = MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", 512);
   for (int i = 0; i < 512; ++i)
   {
@@ -323,7 +321,7 @@ TEST(CutVolume, Edits)
 // The arrays of the output, and edits after changes of the volume.
 TEST(CutVolume, Output)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CutBox);
   volume->GetFieldData()->AddArray(MakeArray<vtkShortArray>("kept", 3));
   auto base = MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", 512);
   volume->GetCellData()->AddArray(base);

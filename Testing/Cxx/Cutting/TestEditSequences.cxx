@@ -24,7 +24,7 @@ using namespace filterTesting;
 namespace
 {
 
-constexpr Extent Box{ { -2, 45, 1, 36, 0, 28 } };
+constexpr Extent EditedBox{ { -2, 45, 1, 36, 0, 28 } };
 
 vtkUnsignedCharArray* GetMask(vtkImageData* volume)
 {
@@ -204,9 +204,9 @@ private:
   }
   glm::dvec3 GetIndex(double margin)
   {
-    return { this->GetNumber(Box[0] - margin, Box[1] + margin),
-      this->GetNumber(Box[2] - margin, Box[3] + margin),
-      this->GetNumber(Box[4] - margin, Box[5] + margin) };
+    return { this->GetNumber(EditedBox[0] - margin, EditedBox[1] + margin),
+      this->GetNumber(EditedBox[2] - margin, EditedBox[3] + margin),
+      this->GetNumber(EditedBox[4] - margin, EditedBox[5] + margin) };
   }
   glm::dvec3 GetWorld(const glm::dvec3& index) const
   {
@@ -294,7 +294,7 @@ private:
   }
 
   std::mt19937 Random;
-  vtkSmartPointer<vtkImageData> Volume = MakeVolume(Box);
+  vtkSmartPointer<vtkImageData> Volume = MakeVolume(EditedBox);
   vtkNew<vtkCutVolume> Cut;
   vtkNew<vtkCarveVolume> Carve;
   History<vtkCutVolume> Cuts{ this->Cut };

@@ -24,7 +24,6 @@ namespace
 {
 
 const char* const NAME = "BoundaryDistance";
-const Extent Box{ { -2, 14, 0, 13, 1, 15 } };
 constexpr double Pi = 3.14159265358979323846;
 
 vtkDataArray* GetDistances(vtkImageData* image)
@@ -64,7 +63,7 @@ struct Fine
 
 TEST(SmoothBoundary, Misuse)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CarvedBox);
   vtkNew<vtkSphere> sphere;
   sphere->SetCenter(5, 5, 6);
   sphere->SetRadius(3.3);
@@ -84,7 +83,7 @@ TEST(SmoothBoundary, Misuse)
   SetDisplacements(mesh, Shift(0.25, 0, 0));
   for (const int components : { 1, 2 })
   {
-    auto wrong = MakeVolume(Box);
+    auto wrong = MakeVolume(CarvedBox);
     wrong->GetPointData()->AddArray(
       MakeArray<vtkShortArray>(NAME, components == 1 ? 7 : wrong->GetNumberOfPoints(), components));
     carve.Filter->SetInputData(wrong);
@@ -107,7 +106,7 @@ TEST(SmoothBoundary, Misuse)
 // BoundaryDistance may have any numeric type. A NaN is not a boundary.
 TEST(SmoothBoundary, Types)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CarvedBox);
   auto mesh = MakeMesh(volume);
   SetDisplacements(mesh, Shift(0.3, 0.2, -0.4));
   vtkNew<vtkFloatArray> floats;
@@ -205,7 +204,7 @@ TEST(SmoothBoundary, VolumeOfSphere)
 // Each sample of the output is covered if it is on the right side of a plane.
 TEST(SmoothBoundary, Plane)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CarvedBox);
   vtkNew<vtkPlane> plane;
   plane->SetOrigin(4.3, 0, 0);
   plane->SetNormal(1.0, 0.0, 0.0);
@@ -239,7 +238,7 @@ TEST(SmoothBoundary, Plane)
 // Labels end halfway between voxels.
 TEST(SmoothBoundary, Labels)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CarvedBox);
   AddLabels(volume);
   Edited<vtkCarveVolume> carve;
   carve.Filter->SetInputData(volume);
@@ -260,7 +259,7 @@ TEST(SmoothBoundary, Labels)
 // In a chain of filters each voxel has the least distance.
 TEST(SmoothBoundary, Chains)
 {
-  auto volume = MakeVolume(Box);
+  auto volume = MakeVolume(CarvedBox);
   const auto copy = [&](vtkAlgorithm* filter)
   {
     filter->Update();

@@ -42,13 +42,6 @@ Grid MakeCurvedTenNodes(vtkUnstructuredGrid* linear, bool separated = false)
   return grid;
 }
 
-glm::dvec3 GetVector(vtkDataSet* dataSet, vtkIdType id)
-{
-  glm::dvec3 vector;
-  dataSet->GetPointData()->GetVectors()->GetTuple(id, &vector.x);
-  return vector;
-}
-
 // The same mesh with four-node tetrahedra. The derived nodes are appended to the points.
 Grid MakeReference(vtkUnstructuredGrid* tenNodes)
 {
@@ -88,18 +81,6 @@ Grid MakeReference(vtkUnstructuredGrid* tenNodes)
   grid->SetPoints(points);
   grid->GetPointData()->SetVectors(vectors);
   return grid;
-}
-
-Grid MoveToDeformed(vtkUnstructuredGrid* mesh)
-{
-  Grid moved = Grid::New();
-  moved->DeepCopy(mesh);
-  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
-  {
-    const glm::dvec3 point = GetPoint(mesh, id) + GetVector(mesh, id);
-    moved->GetPoints()->SetPoint(id, &point.x);
-  }
-  return moved;
 }
 
 TEST(DeformCells, TenNodes)

@@ -87,20 +87,6 @@ Grid MakeBentMesh(vtkImageData* volume)
   return mesh;
 }
 
-Grid MoveToDeformed(vtkUnstructuredGrid* mesh)
-{
-  Grid moved = Grid::New();
-  moved->DeepCopy(mesh);
-  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
-  {
-    glm::dvec3 vector;
-    mesh->GetPointData()->GetArray(name)->GetTuple(id, &vector.x);
-    const glm::dvec3 point = GetPoint(mesh, id) + vector;
-    moved->GetPoints()->SetPoint(id, &point.x);
-  }
-  return moved;
-}
-
 TEST(DeformMeshes, UnusedNodes)
 {
   const auto volume = MakeVolume();

@@ -134,7 +134,7 @@ void VerifyAlike(vtkImageData* found, vtkImageData* expected, double tolerance)
   EXPECT_LE(worst, tolerance);
 }
 
-vtkSmartPointer<vtkImageData> MakeVolume(bool oblique)
+vtkSmartPointer<vtkImageData> MakeTissueVolume(bool oblique)
 {
   auto volume =
     MakeImage({ { -2, 45, 3, 42, 0, 35 } }, glm::dvec3(0.9, 1.1, 1.4), glm::dvec3(5.0, -3.0, 2.0));
@@ -167,7 +167,7 @@ vtkSmartPointer<vtkImageData> MakeField(vtkImageData* volume, double size, bool 
 
 TEST(DeformKeepField, Misuse)
 {
-  const auto volume = MakeVolume(false);
+  const auto volume = MakeTissueVolume(false);
   const auto field = MakeField(volume, 1.0, false);
   Kept subject(volume, field, 6.0);
   vtkNew<vtkImageData> expected;
@@ -195,7 +195,7 @@ TEST(DeformKeepField, Forward)
 {
   for (const bool isOblique : { false, true })
   {
-    const auto volume = MakeVolume(isOblique);
+    const auto volume = MakeTissueVolume(isOblique);
     const auto field = MakeField(volume, 0.9, !isOblique);
     for (const double distance : { 0.0, 4.0, 9.0, 1e5 })
     {
@@ -219,7 +219,7 @@ TEST(DeformKeepField, Forward)
 // Far from the field values do not change by a bit.
 TEST(DeformKeepField, Far)
 {
-  const auto volume = MakeVolume(true);
+  const auto volume = MakeTissueVolume(true);
   const auto field = MakeField(volume, 0.9, true);
   Kept subject(volume, field, 3.0);
   vtkImageData* output = subject.Expect("");
@@ -256,7 +256,7 @@ TEST(DeformKeepField, Inverse)
 {
   for (const bool isOblique : { false, true })
   {
-    const auto volume = MakeVolume(isOblique);
+    const auto volume = MakeTissueVolume(isOblique);
     const auto field = MakeField(volume, 0.9, !isOblique);
     const auto fixed =
       MakeImage({ { 0, 30, 0, 30, 0, 30 } }, glm::dvec3(1.3), glm::dvec3(3.0, -5.0, 1.0));
@@ -309,7 +309,7 @@ TEST(DeformKeepField, Inverse)
 // Displacements, masks and FadeDistance change. The output must be equal to that of a new filter.
 TEST(DeformKeepField, Incremental)
 {
-  const auto volume = MakeVolume(false);
+  const auto volume = MakeTissueVolume(false);
   const auto field = MakeField(volume, 1.0, false);
   const auto active = AddActiveTetrahedra(volume);
   std::mt19937 random(7);
@@ -354,7 +354,7 @@ TEST(DeformKeepField, Incremental)
 // Pieces are equal to parts of the whole output.
 TEST(DeformKeepField, Pieces)
 {
-  const auto volume = MakeVolume(false);
+  const auto volume = MakeTissueVolume(false);
   const auto field = MakeField(volume, 1.0, true);
   for (const bool isInverse : { false, true })
   {
@@ -401,7 +401,7 @@ TEST(DeformKeepField, Parts)
 // A cut through tissue that is kept.
 TEST(DeformKeepField, Cut)
 {
-  const auto volume = MakeVolume(false);
+  const auto volume = MakeTissueVolume(false);
   const auto field = MakeField(volume, 1.5, true);
   const auto voxels = MakeVoxelField(volume, field, 7.0);
   vtkNew<vtkPlaneSource> sheet;
@@ -440,7 +440,7 @@ TEST(DeformKeepField, Cut)
 // Tissue beyond FadeDistance does not need the undefined displacement of a corner of the field.
 TEST(DeformKeepField, Undefined)
 {
-  const auto volume = MakeVolume(false);
+  const auto volume = MakeTissueVolume(false);
   const auto field = MakeField(volume, 1.0, false);
   const auto ghosts = MakeArray<vtkUnsignedCharArray>(
     vtkDataSetAttributes::GhostArrayName(), field->GetNumberOfPoints());
@@ -465,7 +465,7 @@ TEST(DeformKeepField, Undefined)
 // Folded tissue is reported by one warning for each change.
 TEST(DeformKeepField, Warnings)
 {
-  const auto volume = MakeVolume(false);
+  const auto volume = MakeTissueVolume(false);
   const auto field = MakeField(volume, 1.0, false);
   const auto move = [&](double distance) { SetDisplacements(field, Shift(distance, 0.0, 0.0)); };
   for (const bool isInverse : { false, true })

@@ -43,12 +43,12 @@ using Style = vtkDeformVolumeInteractorStyle;
 namespace
 {
 
-std::string GetFileName()
+std::string GetSessionFile()
 {
   return GetTestArgument("-T") + "/TestDeformVolumeInteractorStyle.xml";
 }
 
-constexpr Extent Box{ { -3, 28, 1, 26, 0, 18 } };
+constexpr Extent BallBox{ { -3, 28, 1, 26, 0, 18 } };
 constexpr int WindowSize = 400;
 constexpr double PixelsPerUnit = 10.0;
 constexpr double Middle[3] = { 12.5, 13.5, 9.0 };
@@ -56,12 +56,13 @@ constexpr double Middle[3] = { 12.5, 13.5, 9.0 };
 // A volume of the value 10, with a ball of the value 100 in the middle. Outermost voxels are 0.
 vtkSmartPointer<vtkImageData> MakeBall()
 {
-  auto volume = MakeImage(Box);
+  auto volume = MakeImage(BallBox);
   AddScalars<short>(volume, "value",
     [](const glm::dvec3& p)
     {
-      const bool isBorder = p.x < Box[0] + 0.5 || p.x > Box[1] - 0.5 || p.y < Box[2] + 0.5 ||
-        p.y > Box[3] - 0.5 || p.z < Box[4] + 0.5 || p.z > Box[5] - 0.5;
+      const bool isBorder = p.x < BallBox[0] + 0.5 || p.x > BallBox[1] - 0.5 ||
+        p.y < BallBox[2] + 0.5 || p.y > BallBox[3] - 0.5 || p.z < BallBox[4] + 0.5 ||
+        p.z > BallBox[5] - 0.5;
       const glm::dvec3 middle(Middle[0], Middle[1], Middle[2]);
       return isBorder ? 0.0 : glm::length(p - middle) <= 6.0 ? 100.0 : 10.0;
     });
@@ -324,7 +325,8 @@ TEST(DeformVolumeInteractorStyle, Visible)
   double outside = -10.0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    outside = std::max({ outside, Box[2 * axis] - index[axis], index[axis] - Box[2 * axis + 1] });
+    outside =
+      std::max({ outside, BallBox[2 * axis] - index[axis], index[axis] - BallBox[2 * axis + 1] });
   }
   EXPECT_LT(std::abs(outside), 1e-9);
   vtkImageData* shown = other.Object->GetShownImage();
@@ -338,7 +340,7 @@ TEST(DeformVolumeInteractorStyle, Visible)
     1e-9);
 
   // By default the background value is the least value of the volume.
-  auto negative = MakeImage(Box);
+  auto negative = MakeImage(BallBox);
   AddScalars<short>(negative, "value", [](const glm::dvec3& p) { return -1000.0 + p.x; });
   Viewer third(negative);
   vtkDataArray* values = third.Object->GetShownImage()->GetPointData()->GetScalars();
@@ -424,7 +426,7 @@ bool IsWanted(const Event& event, const Wanted& wanted)
 
 void CheckTools(int model)
 {
-  const std::string fileName = GetFileName();
+  const std::string fileName = GetSessionFile();
   constexpr double top = 17.0;
   const auto volume = MakeBall();
   Viewer viewer(volume);
@@ -563,7 +565,7 @@ TEST(DeformVolumeInteractorStyle, NegativeSpacing)
 {
   const auto reversed = MakeBall(); // the ball is symmetric
   reversed->SetSpacing(-1.0, -1.0, -1.0);
-  reversed->SetOrigin(Box[0] + Box[1], Box[2] + Box[3], Box[4] + Box[5]);
+  reversed->SetOrigin(BallBox[0] + BallBox[1], BallBox[2] + BallBox[3], BallBox[4] + BallBox[5]);
   std::vector<std::vector<double>> sheets;
   for (const auto& volume : { MakeBall(), reversed })
   {
@@ -583,8 +585,8 @@ TEST(DeformVolumeInteractorStyle, NegativeSpacing)
     viewer.Replay(Viewer::Key('c') + Viewer::Mouse("LeftButtonPressEvent", 11.0, 12.0) +
       Viewer::Mouse("MouseMoveEvent", 14.0, 15.0) +
       Viewer::Mouse("LeftButtonReleaseEvent", 14.0, 15.0) + Viewer::Timer());
-    EXPECT_TRUE(viewer.SessionObject->SaveSession(GetFileName()));
-    for (const Event& event : ReadEvents(GetFileName()))
+    EXPECT_TRUE(viewer.SessionObject->SaveSession(GetSessionFile()));
+    for (const Event& event : ReadEvents(GetSessionFile()))
     {
       if (event.Name == "Cut")
       {
@@ -604,7 +606,7 @@ TEST(DeformVolumeInteractorStyle, NegativeSpacing)
 // The handles after undo, and after failed events.
 TEST(DeformVolumeInteractorStyle, Handles)
 {
-  const std::string fileName = GetFileName();
+  const std::string fileName = GetSessionFile();
   Viewer viewer(MakeBall());
   const std::string timer = Viewer::Timer();
   const auto release = [&](double x, double y)
@@ -762,8 +764,8 @@ TEST(DeformVolumeInteractorStyle, Random)
   std::map<std::string, int> words;
   for (int i = 0; i < 300 && !HasFailure(); ++i)
   {
-    const double x = pick(Box[0] - 4.0, Box[1] + 4.0);
-    const double y = pick(Box[2] - 4.0, Box[3] + 4.0);
+    const double x = pick(BallBox[0] - 4.0, BallBox[1] + 4.0);
+    const double y = pick(BallBox[2] - 4.0, BallBox[3] + 4.0);
     switch (random() % 8)
     {
       case 0:

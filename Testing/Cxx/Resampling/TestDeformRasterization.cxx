@@ -28,7 +28,7 @@ class DeformRasterization : public testing::Test
 
 const Extent Box{ { -3, 16, 2, 17, -8, 10 } };
 
-glm::dvec3 Bend(const glm::dvec3& p)
+glm::dvec3 BendPoint(const glm::dvec3& p)
 {
   return p + glm::dvec3(0.9 * std::sin(0.25 * p.y), 0.4, 0.8 * std::cos(0.3 * p.x));
 }
@@ -46,9 +46,9 @@ TEST_F(DeformRasterization, Misuse)
 {
   auto volume = MakeVolume(Box);
   auto mesh = MakeMesh(volume);
-  SetDisplacements(mesh, Bend);
+  SetDisplacements(mesh, BendPoint);
   auto field = MakeImage(Box);
-  SetDisplacements(field, Bend);
+  SetDisplacements(field, BendPoint);
 
   Deformed byField(volume, field);
   byField.Filter->SetResamplerToMeshRasterization();
@@ -296,7 +296,7 @@ TEST_F(DeformRasterization, Automatic)
 {
   auto volume = MakeVolume({ { 0, 63, 0, 63, 0, 63 } });
   auto mesh = MakeMesh(volume);
-  SetDisplacements(mesh, Bend);
+  SetDisplacements(mesh, BendPoint);
   Deformed deformed(volume, mesh);
   deformed.Update();
   EXPECT_EQ(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::EXACT));

@@ -20,9 +20,10 @@ namespace
 
 constexpr Extent Cube{ { 0, 47, 0, 47, 0, 47 } };
 
-struct Subject
+struct RelaxedSubject
 {
-  explicit Subject(const Extent& extent, std::size_t workGroupSize = 0, unsigned int order = 0)
+  explicit RelaxedSubject(
+    const Extent& extent, std::size_t workGroupSize = 0, unsigned int order = 0)
     : Output(static_cast<std::size_t>(3 * GetNumberOfPoints(extent)))
   {
     this->Model.SetWorkGroupSize(workGroupSize);
@@ -126,7 +127,7 @@ TEST_P(Relaxation, LowersTheEnergy)
   double last = 0.0;
   for (const int sweeps : { 0, 1, 5, 20, 100 })
   {
-    Subject subject(Cube);
+    RelaxedSubject subject(Cube);
     subject.Model.SetMaterials(reference.Table, reference.Materials.data());
     subject.Request.Handles = { GetDrag() };
     const ChainMailReport report = subject.Step(sweeps);
@@ -169,7 +170,7 @@ TEST(ChainMailRelaxation, EnergyInTheDocumentation)
   for (const auto& [sweeps, expected] : documented)
   {
     SCOPED_TRACE(sweeps);
-    Subject subject(Cube);
+    RelaxedSubject subject(Cube);
     subject.Request.Handles = { GetDrag() };
     subject.Step(sweeps);
     // The values have two decimals. The reference relaxes the whole cube, not only the blocks that
@@ -233,7 +234,7 @@ TEST_P(Relaxation, IsTheSameInAnyOrder)
   std::vector<float> first;
   for (unsigned int run = 0; run < 4; ++run)
   {
-    Subject subject(Cube, run < 2 ? 0 : run == 2 ? 1 : 16, run);
+    RelaxedSubject subject(Cube, run < 2 ? 0 : run == 2 ? 1 : 16, run);
     subject.Model.SetMaterials(reference.Table, reference.Materials.data());
     subject.Request.Handles = { GetDrag() };
     for (int step = 0; step < 5; ++step)
@@ -251,7 +252,7 @@ INSTANTIATE_TEST_SUITE_P(Tissues, Relaxation, testing::Bool());
 
 TEST(ChainMailRelaxation, PlasticityThreshold)
 {
-  Subject subject(Cube);
+  RelaxedSubject subject(Cube);
   subject.Request.Handles = { GetDrag() };
   subject.Step(0);
   const std::vector<float> before = subject.Output;
@@ -267,7 +268,7 @@ TEST(ChainMailRelaxation, PlasticityThreshold)
 TEST(ChainMailRelaxation, ReturnsToRestWherePinned)
 {
   const Extent extent{ { 0, 15, 0, 15, 0, 15 } };
-  Subject subject(extent);
+  RelaxedSubject subject(extent);
   std::vector<unsigned char> pinned(4096);
   for (std::size_t i = 0; i < pinned.size(); ++i)
   {
@@ -296,10 +297,10 @@ TEST(ChainMailRelaxation, ReturnsToRestWherePinned)
 
 TEST(ChainMailSteps, AbortRestoresTheState)
 {
-  Subject subject(Cube);
+  RelaxedSubject subject(Cube);
   subject.Request.Handles = { GetDrag() };
   subject.Step(1);
-  Subject other(Cube);
+  RelaxedSubject other(Cube);
   other.Request.Handles = { GetDrag() };
   other.Step(1);
   const std::vector<float> before = subject.Output;
@@ -330,7 +331,7 @@ TEST(ChainMailSteps, AbortRestoresTheState)
 TEST(ChainMailSteps, OnlyChangedVoxelsAreWritten)
 {
   const Extent extent{ { 2, 70, -9, 30, 0, 20 } };
-  Subject subject(extent);
+  RelaxedSubject subject(extent);
   std::mt19937 random(2);
   std::vector<float> shadow = subject.Output;
   constexpr float mark = 77.0F;

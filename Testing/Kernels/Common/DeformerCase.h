@@ -14,6 +14,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -53,6 +54,9 @@ struct DeformerCase
     return deformvolume::GetNumberOfPoints(this->VoxelGrid.VertexExtent);
   }
 };
+
+/// The scale of a map to output voxels that have the size of the volume's voxels.
+constexpr std::array<double, 3> NoScale{ { 1, 1, 1 } };
 
 /// Makes a case from a map of structured indices to continuous output indices, which are rounded to
 /// 1/256. The output becomes the bounds of the result, enlarged by margin voxels.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tetrahedra of the sampling mesh that a sheet switches off: exact numbers, comparisons with a
 // slow reference, and the separation of volumes by complete sheets.
+#include "CutMask.h"
 #include "CuttingReference.h"
 #include "Error.h"
 #include "Sheet.h"
-#include "SheetCut.h"
 #include "TimeAllowance.h"
 
 #include <gtest/gtest.h>
@@ -67,11 +67,6 @@ Sheet MakePlane(std::mt19937& random, int count, double low, double high, Plane&
   }
   std::shuffle(triangles.begin(), triangles.end(), random);
   return Sheet(points, triangles);
-}
-
-reference::Mask Cut(const VertexPositions& positions, const Sheet& sheet)
-{
-  return reference::GetMask(positions.GetBricks(), FindCrossedTetrahedra(positions, sheet));
 }
 
 // Checks that no part has tetrahedra of both lists.

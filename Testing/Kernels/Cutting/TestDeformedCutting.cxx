@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cutting a volume at its deformed position.
+#include "CutMask.h"
 #include "CuttingReference.h"
 #include "DeformedPositions.h"
 #include "Error.h"
 #include "Sheet.h"
-#include "SheetCut.h"
 
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
@@ -20,11 +20,6 @@ using namespace deformvolume;
 
 namespace
 {
-
-reference::Mask Cut(const VertexPositions& positions, const Sheet& sheet)
-{
-  return reference::GetMask(positions.GetBricks(), FindCrossedTetrahedra(positions, sheet));
-}
 
 // Three random triangles, translated by move.
 Sheet MakeSheet(unsigned int seed, const glm::dvec3& move)

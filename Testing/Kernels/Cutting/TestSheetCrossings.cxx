@@ -70,7 +70,7 @@ struct Made
   }
 };
 
-Made Cut(const VertexPositions& positions, const std::vector<Sheet>& sheets)
+Made CutByAll(const VertexPositions& positions, const std::vector<Sheet>& sheets)
 {
   MaskEditor editor(positions.GetBricks().GetVertices());
   for (const Sheet& sheet : sheets)
@@ -176,7 +176,7 @@ TEST(SheetCrossings, PlanesDivideWhatTheyCross)
     {
       SCOPED_TRACE(count);
       const Sheet sheet = MakeSheet(random, count, -20, 28, plane.Plane);
-      const Made made = Cut(positions, { sheet });
+      const Made made = CutByAll(positions, { sheet });
       EXPECT_EQ(made.Divided, FindCrossed(positions, sheet));
       EXPECT_GT(CountBits(made.Divided), 300);
       EXPECT_EQ(CountOff(made), 0);
@@ -229,7 +229,7 @@ TEST(SheetCrossings, RoughSheetsDivideByTheirSides)
     const Sheet sheet = MakeSheet(random, count, low, low + 24.0,
       [&](double u, double v) { return glm::dvec3(u, v, heights[next++]); });
     const RestPositions positions(Cells);
-    const Made made = Cut(positions, { sheet });
+    const Made made = CutByAll(positions, { sheet });
     std::vector<int> sides(made.Distances.size());
     for (std::size_t i = 0; i < sides.size(); ++i)
     {
@@ -311,12 +311,12 @@ TEST(SheetCrossings, PartsOfASheetDivideAsTheWhole)
     }
     return Sheet(points, triangles);
   };
-  const Made whole = Cut(positions, { make(0, 12) });
+  const Made whole = CutByAll(positions, { make(0, 12) });
   EXPECT_GT(CountBits(whole.Divided), 300);
-  EXPECT_TRUE(Cut(positions, { make(0, 5), make(5, 12) }) == whole);
-  EXPECT_TRUE(Cut(positions, { make(7, 12), make(0, 3), make(3, 7) }) == whole);
+  EXPECT_TRUE(CutByAll(positions, { make(0, 5), make(5, 12) }) == whole);
+  EXPECT_TRUE(CutByAll(positions, { make(7, 12), make(0, 3), make(3, 7) }) == whole);
   // A sheet that ends inside the volume does not divide the tetrahedra that it only enters.
-  const Made half = Cut(positions, { make(0, 5) });
+  const Made half = CutByAll(positions, { make(0, 5) });
   const std::vector<unsigned char> crossed = FindCrossed(positions, make(0, 5));
   EXPECT_EQ(CountOff(half), 0);
   EXPECT_LT(CountBits(half.Divided), CountBits(crossed));
@@ -341,8 +341,8 @@ TEST(SheetCrossings, TetrahedraCrossedTwiceAreSwitchedOff)
     const Sheet second = MakeSheet(random, 3, -20, 28,
       [slope = slope, place = place](double u, double v)
       { return glm::dvec3(u, v, place + slope * u); });
-    const Made both = Cut(positions, { first, second });
-    EXPECT_TRUE(Cut(positions, { second, first }) == both);
+    const Made both = CutByAll(positions, { first, second });
+    EXPECT_TRUE(CutByAll(positions, { second, first }) == both);
     const std::vector<unsigned char> byFirst = FindCrossed(positions, first);
     const std::vector<unsigned char> bySecond = FindCrossed(positions, second);
     // If the sheets are a voxel apart and have opposite orientations, each tetrahedron is divided
@@ -358,7 +358,7 @@ TEST(SheetCrossings, TetrahedraCrossedTwiceAreSwitchedOff)
       ASSERT_EQ(both.Divided[cell] & off, 0);
     }
     // The result is the same if the first cut is the base cut of the volume.
-    const Made alone = Cut(positions, { first });
+    const Made alone = CutByAll(positions, { first });
     MaskEditor chain(Cells);
     chain.SetBaseCut(alone.Divided.data(), alone.Distances.data());
     chain.Add({}, {}, FindSheetCrossings(positions, second));
@@ -389,7 +389,7 @@ TEST(SheetCrossings, EditsAreUndoneBitForBit)
     {
       sheets.push_back(edit.second);
     }
-    ASSERT_TRUE(Cut(positions, sheets) == states.back()) << "cut " << round;
+    ASSERT_TRUE(CutByAll(positions, sheets) == states.back()) << "cut " << round;
   }
   for (std::size_t i = states.size() - 1; i-- > 0;)
   {
@@ -409,7 +409,7 @@ TEST(SheetCrossings, EditsAreUndoneBitForBit)
   {
     sheets.push_back(edit.second);
   }
-  const Made left = Cut(positions, sheets);
+  const Made left = CutByAll(positions, sheets);
   EXPECT_TRUE(Made(editor) == left);
   std::vector<unsigned char> base(left.Mask.size(), 31);
   base[17] = 5;

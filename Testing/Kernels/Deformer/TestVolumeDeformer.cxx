@@ -13,8 +13,6 @@ using namespace deformvolume;
 namespace
 {
 
-const std::array<double, 3> NoScale{ { 1, 1, 1 } };
-
 void Check(const DeformerCase& tiny, Route route, bool embedding = true)
 {
   const UsualArrays usual(tiny.GetNumberOfVoxels());

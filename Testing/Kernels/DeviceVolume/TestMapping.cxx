@@ -15,8 +15,6 @@ using namespace deformvolume;
 namespace
 {
 
-const std::array<double, 3> NoScale{ { 1, 1, 1 } };
-
 /// first: the first structured index, an even number. Large indices do not fit into a float.
 void TestFieldOfHalfTheResolution(int first)
 {

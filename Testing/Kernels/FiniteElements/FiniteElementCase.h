@@ -3,6 +3,7 @@
 #ifndef FiniteElementCase_h
 #define FiniteElementCase_h
 
+#include "CaughtError.h"
 #include "FiniteElementModel.h"
 #include "LatticeBody.h"
 #include "MidSideNodes.h"
@@ -17,8 +18,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
+
+constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
 
 inline deformvolume::ElasticMaterial MakeMaterial(double youngModulus, double poissonRatio)
 {
@@ -52,21 +56,6 @@ inline double LargestDifference(const std::vector<glm::dvec3>& a, const std::vec
     largest = std::max(largest, LargestOf(a[i] - b[i]));
   }
   return largest;
-}
-
-/// Returns the message of the error that a call throws.
-template <typename Call>
-std::string GetError(Call&& call)
-{
-  try
-  {
-    call();
-  }
-  catch (const deformvolume::Error& error)
-  {
-    return error.what();
-  }
-  return "";
 }
 
 inline glm::dmat3 MakeRotation(double angle, const glm::dvec3& axis)

@@ -17,8 +17,6 @@ namespace
 
 using Place = LatticeBody::Place;
 
-constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
-
 // A cube of size 1 m.
 QuadraticLattice MakeCube(const std::function<bool(const Place&)>& isFixed = nullptr)
 {

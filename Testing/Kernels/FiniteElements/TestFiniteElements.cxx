@@ -21,8 +21,6 @@ namespace
 
 using Place = LatticeBody::Place;
 
-constexpr double NoNumber = std::numeric_limits<double>::quiet_NaN();
-
 // A block of linear tetrahedra that is fixed at one end. nodes: number of nodes on each axis.
 LatticeBody MakeLinearBlock(const Place& nodes, double poissonRatio = 0.3)
 {

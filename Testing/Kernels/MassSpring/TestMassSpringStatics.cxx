@@ -19,7 +19,7 @@ using namespace physicsTesting;
 namespace
 {
 
-constexpr double Spacing = 2.5e-3;
+constexpr double CellSize = 2.5e-3;
 constexpr double Strain = 1e-3;
 
 ElasticMaterial MakeMaterial(double poissonRatio)
@@ -113,7 +113,7 @@ private:
     {
       largest = std::max(largest, std::abs(value));
     }
-    const double factor = 1e-4 * Spacing / largest;
+    const double factor = 1e-4 * CellSize / largest;
     std::vector<float> small(x.size());
     std::transform(x.begin(), x.end(), small.begin(),
       [&](double value) { return static_cast<float>(factor * value); });
@@ -137,7 +137,7 @@ private:
     // A least-squares fit. Without the volume energy, every second node on a free surface stays
     // behind. This is no property of the material, so the surface is excluded.
     const glm::dvec3 middle = 0.5 * (this->Low + this->High);
-    const glm::dvec3 half = this->High - middle - glm::dvec3(0.5 * Spacing);
+    const glm::dvec3 half = this->High - middle - glm::dvec3(0.5 * CellSize);
     double narrowing = 0.0;
     double width = 0.0;
     for (std::size_t node = 0; node < this->Body.Points.size(); ++node)
@@ -167,7 +167,7 @@ TEST(MassSpringStatics, LatticesAreIsotropic)
   for (const double poissonRatio : { 0.25, 0.4, 0.45 })
   {
     const ElasticMaterial material = MakeMaterial(poissonRatio);
-    const ElasticBody body = MakeLatticeBody({ { 9, 9, 9 } }, glm::dvec3(Spacing), material);
+    const ElasticBody body = MakeLatticeBody({ { 9, 9, 9 } }, glm::dvec3(CellSize), material);
     MassSpringModel model;
     model.SetBody(body);
     const Constants constants = BarTest(model, body).Measure();
@@ -183,7 +183,7 @@ TEST(MassSpringStatics, HangingBar)
 {
   ElasticMaterial material = MakeMaterial(0.4);
   const std::array<int, 3> nodes{ { 5, 5, 21 } };
-  ElasticBody body = MakeLatticeBody(nodes, glm::dvec3(Spacing), material);
+  ElasticBody body = MakeLatticeBody(nodes, glm::dvec3(CellSize), material);
   FixNodes(body, [](const glm::dvec3& point) { return point.z == 0.0; });
   MassSpringModel model;
   model.SetBody(body);
@@ -192,7 +192,7 @@ TEST(MassSpringStatics, HangingBar)
   request.Damping = 20.0;
   request.Loads.Gravity = { 0, 0, 1.0 };
   model.Advance(request);
-  const double length = 20.0 * Spacing;
+  const double length = 20.0 * CellSize;
   const double expected =
     material.Density * request.Loads.Gravity.z * length * length / (2.0 * material.YoungModulus);
   const std::vector<float> displacements = model.GetDisplacements();
@@ -207,7 +207,7 @@ TEST(MassSpringStatics, HangingBar)
 TEST(MassSpringStatics, StressOfAStrain)
 {
   const ElasticMaterial material = MakeMaterial(0.4);
-  const ElasticBody body = MakeLatticeBody({ { 5, 5, 5 } }, glm::dvec3(Spacing), material);
+  const ElasticBody body = MakeLatticeBody({ { 5, 5, 5 } }, glm::dvec3(CellSize), material);
   MassSpringModel model;
   model.SetBody(body);
   std::vector<float> displacements;

@@ -3,6 +3,7 @@
 // must equal those with displacements from the host bit for bit. TestDeviceVectorsGraphics runs
 // these tests on a device with its own memory.
 #include "BoxBounds.h"
+#include "CaughtError.h"
 #include "ChainMailModel.h"
 #include "DeformedBounds.h"
 #include "DeformerCase.h"
@@ -34,19 +35,6 @@ using Vectors = std::shared_ptr<DeviceVectors>;
 const Matrix Identity = DisplacementField().ToDisplacement;
 // A matrix without zeros, symmetries or exact binary fractions.
 const Matrix Turned{ { 0.61, -0.23, 0.07, 0.19, 0.71, -0.11, -0.05, 0.13, 0.83 } };
-
-std::string GetError(const std::function<void()>& function)
-{
-  try
-  {
-    function();
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "";
-}
 
 // Random vectors in world units, small enough that the volume is hardly folded.
 std::vector<float> MakeVectors(std::size_t points, unsigned int seed)

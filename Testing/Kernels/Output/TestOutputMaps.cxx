@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Outputs whose grid is rotated, scaled, shifted or mirrored relative to the grid of the volume
 // (VoxelGrid::ToOutput), for all kernels, mappings and resamplers.
+#include "CaughtError.h"
 #include "DeviceNeeds.h"
 #include "EditedVolume.h"
 #include "OutputPlace.h"
@@ -56,19 +57,6 @@ OutputMap MakeTurnedMap(const glm::dvec3& center, bool isMirrored, double scale 
   const glm::dvec3 shift = center - PlaceInOutput(map, center);
   map.Shift = { { shift.x, shift.y, shift.z } };
   return map;
-}
-
-std::string GetError(const std::function<void()>& function)
-{
-  try
-  {
-    function();
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "";
 }
 
 /// Moves voxels slightly, independent of each other.

@@ -15,7 +15,7 @@ namespace
 {
 
 // Two tetrahedra that share the face of nodes 1, 2 and 3.
-ElasticBody MakePair()
+ElasticBody MakeNeighbors()
 {
   ElasticBody body;
   body.Points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, { 1, 1, 1 } };
@@ -67,7 +67,7 @@ TEST(MidSideNodes, LieInTheMiddleOfEdges)
 
 TEST(MidSideNodes, GivenOnesStay)
 {
-  ElasticBody body = MakePair();
+  ElasticBody body = MakeNeighbors();
   body.Points.push_back({ 0.52, 0.5, 0.0 }); // the mid-side node of the edge 1 2
   body.MidSides = { { { -1, 5, -1, -1, -1, -1 } }, { { -1, -1, -1, -1, -1, -1 } } };
   EXPECT_EQ(AddMidSideNodes(body).size(), 8u);
@@ -88,7 +88,7 @@ TEST(MidSideNodes, GivenOnesStay)
 
 TEST(MidSideNodes, SplitWithTheirEdges)
 {
-  ElasticBody body = MakePair();
+  ElasticBody body = MakeNeighbors();
   AddMidSideNodes(body);
   const auto nodes = static_cast<std::int32_t>(body.Points.size());
   const std::vector<MidSideNodes> before = body.MidSides;

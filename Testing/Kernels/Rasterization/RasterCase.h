@@ -6,6 +6,9 @@
 
 #include "DeformerCase.h"
 
+/// The volume of most tests.
+constexpr deformvolume::Extent Volume{ { -3, 18, 2, 16, -9, 5 } };
+
 struct RasterCase
 {
   deformvolume::VoxelGrid VoxelGrid;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Inverse displacement fields, compared with a look-up on the host in extended precision: misuse,
 // coverage, values, and that results do not depend on slabs and work-groups.
+#include "CaughtError.h"
 #include "FieldFolds.h"
 #include "OutputPlace.h"
 #include "RasterCase.h"
@@ -171,21 +172,6 @@ void ExpectLookedUp(const InverseCase& c, const std::vector<float>& values,
   EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, covered);
   EXPECT_GT(covered, GetNumberOfPoints(c.VoxelGrid.VertexExtent) / 8);
 }
-
-std::string GetError(const std::function<void()>& function)
-{
-  try
-  {
-    function();
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "";
-}
-
-const Extent Volume{ { -3, 18, 2, 16, -9, 5 } };
 
 // Compares a whole output with the look-up, linear and cubic, and expects the same result with
 // slabs and other work-group sizes.

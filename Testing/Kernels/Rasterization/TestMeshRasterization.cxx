@@ -2,6 +2,7 @@
 // The resampler MeshRasterization, compared with a brute-force reference: misuse, coverage, values,
 // and that results do not depend on tiles, slabs and work-groups.
 #include "AllTypes.h"
+#include "CaughtError.h"
 #include "DeviceNeeds.h"
 #include "RasterCase.h"
 
@@ -18,22 +19,6 @@ using namespace deformvolume;
 
 namespace
 {
-
-const Extent Volume{ { -3, 18, 2, 16, -9, 5 } };
-
-std::string GetError(const std::function<void()>& function)
-{
-  try
-  {
-    function();
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  ADD_FAILURE() << "expected an error, but none was thrown";
-  return "";
-}
 
 glm::dvec3 Wave(const glm::dvec3& index)
 {

@@ -12,8 +12,6 @@ using namespace deformvolume;
 namespace
 {
 
-const std::array<double, 3> NoScale{ { 1, 1, 1 } };
-
 /// Compares the results for several work-group sizes with the reference, and with each other bit by
 /// bit. If asLanes is true, also compares with the kernel by lanes.
 void Check(const DeformerCase& deformerCase, bool asLanes = true)

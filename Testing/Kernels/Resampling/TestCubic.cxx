@@ -28,7 +28,7 @@ using namespace deformvolume;
 namespace
 {
 
-const Extent Volume{ { -4, 11, 1, 15, 0, 13 } };
+const Extent CubicVolume{ { -4, 11, 1, 15, 0, 13 } };
 
 std::int64_t GetPlace(const Extent& extent, int x, int y, int z)
 {
@@ -39,7 +39,7 @@ std::int64_t GetPlace(const Extent& extent, int x, int y, int z)
 
 DeformerCase MakeJittered(double amplitude = 0.15)
 {
-  return MakeCase(Volume, { { 1, 1, 1 } },
+  return MakeCase(CubicVolume, { { 1, 1, 1 } },
     [jitter = MakeJitter(5, amplitude)](const glm::dvec3& index) mutable
     { return 1.3 * jitter(index) + glm::dvec3(0.1, 0.2, 0.3); });
 }
@@ -76,7 +76,8 @@ bool IsInside(const glm::dvec3& index)
   bool inside = true;
   for (int axis = 0; axis < 3; ++axis)
   {
-    inside &= index[axis] > Volume[2 * axis] + 1 && index[axis] < Volume[2 * axis + 1] - 1;
+    inside &=
+      index[axis] > CubicVolume[2 * axis] + 1 && index[axis] < CubicVolume[2 * axis + 1] - 1;
   }
   return inside;
 }
@@ -112,7 +113,7 @@ TEST(Cubic, VoxelsComeOutBitForBit)
   for (const glm::dvec3& shift : { glm::dvec3(0.0), glm::dvec3(3.0, -2.0, 1.0) })
   {
     DeformerCase made = MakeCase(
-      Volume, { { 1, 1, 1 } }, [&](const glm::dvec3& index) { return index + shift; }, 0);
+      CubicVolume, { { 1, 1, 1 } }, [&](const glm::dvec3& index) { return index + shift; }, 0);
     UsualArrays usual(made.GetNumberOfVoxels());
     usual.Shorts = MakeRandomBits<std::int16_t>(usual.Shorts.size(), 1);
     usual.Floats = MakeRandomBits<float>(usual.Floats.size(), 2);
@@ -132,10 +133,10 @@ TEST(Cubic, VoxelsComeOutBitForBit)
 TEST(Cubic, NotANumberStaysWithinItsCells)
 {
   const DeformerCase made = MakeCase(
-    Volume, { { 1, 1, 1 } },
+    CubicVolume, { { 1, 1, 1 } },
     [](const glm::dvec3& index) { return index + glm::dvec3(0.5, 1.0, 0.0); }, 0);
   UsualArrays usual(made.GetNumberOfVoxels());
-  usual.Floats[GetPlace(Volume, 3, 8, 6)] = std::numeric_limits<float>::quiet_NaN();
+  usual.Floats[GetPlace(CubicVolume, 3, 8, 6)] = std::numeric_limits<float>::quiet_NaN();
   const Deformed deformed = RunCubic(made, usual.Get());
   std::int64_t wrong = 0;
   std::int64_t voxel = 0;
@@ -161,11 +162,11 @@ TEST(Cubic, QuadraticsAreReproduced)
   for (const double mirror : { 1.0, -1.0 })
   {
     const glm::dvec3 sign(mirror, 1.0, 1.0);
-    const DeformerCase made =
-      MakeCase(Volume, { { 1, 1, 1 } }, [&](const glm::dvec3& index) { return sign * Map(index); });
+    const DeformerCase made = MakeCase(
+      CubicVolume, { { 1, 1, 1 } }, [&](const glm::dvec3& index) { return sign * Map(index); });
     std::vector<double> values;
     ForEachPoint(
-      Volume, [&](int x, int y, int z) { values.push_back(polynomial(glm::dvec3(x, y, z))); });
+      CubicVolume, [&](int x, int y, int z) { values.push_back(polynomial(glm::dvec3(x, y, z))); });
     const std::vector<VolumeArray> arrays{ MakeArray(values) };
     const Deformed cubic = RunCubic(made, arrays);
     const Deformed linear = RunLinear(made, arrays);
@@ -251,7 +252,7 @@ TEST(Cubic, LinearWhereVoxelsAreMissing)
   const DeformerCase whole = MakeJittered();
   const UsualArrays usual(whole.GetNumberOfVoxels());
   const std::vector<VolumeArray> arrays = usual.Get();
-  const std::size_t voxel = GetPlace(Volume, 3, 8, 6);
+  const std::size_t voxel = GetPlace(CubicVolume, 3, 8, 6);
   const Extent cells{ { -4, 10, 1, 14, 0, 12 } };
   const std::size_t cell = GetPlace(cells, 3, 8, 6);
   struct Defect
@@ -287,14 +288,14 @@ TEST(Cubic, LinearWhereVoxelsAreMissing)
     { "inactive",
       [&](DeformerCase& made)
       {
-        made.Active.assign(GetNumberOfCells(Volume), 31);
+        made.Active.assign(GetNumberOfCells(CubicVolume), 31);
         made.Active[cell] = 29;
       },
       Route::Field, 27 },
     { "cut",
       [&](DeformerCase& made)
       {
-        made.Crossed.assign(GetNumberOfCells(Volume), 0);
+        made.Crossed.assign(GetNumberOfCells(CubicVolume), 0);
         made.Crossed[cell] = 31;
         made.CutDistances.assign(made.GetNumberOfVoxels(), 1.0F);
         made.CutDistances[voxel] = -1.0F;
@@ -313,7 +314,7 @@ TEST(Cubic, LinearWhereVoxelsAreMissing)
     DeformerCase made = whole;
     defect.Make(made);
     int linears = 0;
-    for (std::int64_t i = 0; i < GetNumberOfCells(Volume); ++i)
+    for (std::int64_t i = 0; i < GetNumberOfCells(CubicVolume); ++i)
     {
       linears += !IsCubicCell(made, i);
     }
@@ -352,7 +353,7 @@ TEST(Cubic, ThinVolumesAreLinear)
 {
   for (const int axis : { 0, 1, 2 })
   {
-    Extent extent = Volume;
+    Extent extent = CubicVolume;
     extent[2 * axis + 1] = extent[2 * axis] + 1 + axis % 2;
     const DeformerCase made = MakeCase(extent, { { 1, 1, 1 } }, Map);
     const UsualArrays usual(made.GetNumberOfVoxels());
@@ -402,12 +403,13 @@ TEST(Cubic, ChunksEqualTheWhole)
 {
   DeformerCase made = MakeJittered(0.5); // folded
   made.Blanked.resize(made.GetNumberOfVoxels());
-  made.Blanked[GetPlace(Volume, 3, 8, 6)] = 1;
-  made.Active.assign(GetNumberOfCells(Volume), 31);
+  made.Blanked[GetPlace(CubicVolume, 3, 8, 6)] = 1;
+  made.Active.assign(GetNumberOfCells(CubicVolume), 31);
   made.Active[200] = 7;
   const UsualArrays usual(made.GetNumberOfVoxels());
   const std::vector<VolumeArray> arrays = usual.Get();
-  const std::uint64_t plane = sizeof(VertexLink) * GetSize(Volume, 0) * GetSize(Volume, 1);
+  const std::uint64_t plane =
+    sizeof(VertexLink) * GetSize(CubicVolume, 0) * GetSize(CubicVolume, 1);
   for (const bool isCut : { false, true })
   {
     if (isCut)
@@ -436,8 +438,8 @@ TEST(Cubic, PartsEqualTheWhole)
 {
   const auto move = [jitter = MakeJitter(7, 0.2)](const glm::dvec3& index) mutable
   { return jitter(index) + glm::dvec3(0.5, 0.25, 0.5); };
-  DeformerCase whole = MakeCase(Volume, { { 1, 1, 1 } }, move);
-  whole.Active.assign(GetNumberOfCells(Volume), 31);
+  DeformerCase whole = MakeCase(CubicVolume, { { 1, 1, 1 } }, move);
+  whole.Active.assign(GetNumberOfCells(CubicVolume), 31);
   std::mt19937 random(3);
   for (int i = 0; i < 20; ++i)
   {
@@ -446,12 +448,12 @@ TEST(Cubic, PartsEqualTheWhole)
   const UsualArrays usual(whole.GetNumberOfVoxels());
   const Deformed all = RunCubic(whole, usual.Get());
   // Samples with z from 5 to 7 lie in cells between voxels 4 and 8.
-  const std::int64_t plane = GetSize(Volume, 0) * GetSize(Volume, 1);
-  const std::int64_t layer = (GetSize(Volume, 0) - 1) * (GetSize(Volume, 1) - 1);
+  const std::int64_t plane = GetSize(CubicVolume, 0) * GetSize(CubicVolume, 1);
+  const std::int64_t layer = (GetSize(CubicVolume, 0) - 1) * (GetSize(CubicVolume, 1) - 1);
   const std::int64_t first = 3;
   const std::int64_t last = 9;
   DeformerCase part = whole;
-  part.VoxelGrid.WholeExtent = Volume;
+  part.VoxelGrid.WholeExtent = CubicVolume;
   part.VoxelGrid.VertexExtent[4] = static_cast<int>(first);
   part.VoxelGrid.VertexExtent[5] = static_cast<int>(last);
   part.Displacements = { whole.Displacements.begin() + first * plane,

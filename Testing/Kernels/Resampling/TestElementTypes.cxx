@@ -16,7 +16,7 @@ using namespace deformvolume;
 namespace
 {
 
-const Extent Volume{ { -3, 8, 2, 10, -9, -1 } };
+const Extent TypedVolume{ { -3, 8, 2, 10, -9, -1 } };
 
 glm::dvec3 Stay(const glm::dvec3& index)
 {
@@ -26,7 +26,7 @@ glm::dvec3 Stay(const glm::dvec3& index)
 DeformerCase Shift(const glm::dvec3& shift)
 {
   return MakeCase(
-    Volume, { { 1, 1, 1 } }, [&shift](const glm::dvec3& index) { return index + shift; }, 0);
+    TypedVolume, { { 1, 1, 1 } }, [&shift](const glm::dvec3& index) { return index + shift; }, 0);
 }
 
 /// Expects the input's bits at the output voxels that a shift by whole voxels gives.
@@ -36,11 +36,11 @@ void ExpectShifted(const Deformed& deformed, const std::vector<VolumeArray>& arr
   {
     SCOPED_TRACE(i);
     const std::size_t bytes =
-      GetNumberOfPoints(Volume) * arrays[i].Components * GetElementSize(arrays[i].Type);
+      GetNumberOfPoints(TypedVolume) * arrays[i].Components * GetElementSize(arrays[i].Type);
     ASSERT_EQ(deformed.Outputs[i].size(), bytes);
     EXPECT_EQ(std::memcmp(deformed.Outputs[i].data(), arrays[i].Data, bytes), 0);
   }
-  EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, GetNumberOfPoints(Volume));
+  EXPECT_EQ(deformed.Report.NumberOfCoveredVoxels, GetNumberOfPoints(TypedVolume));
   EXPECT_EQ(deformed.Report.NumberOfInvertedTetrahedra, 0);
   EXPECT_FALSE(deformed.Report.Overlapping);
   for (const signed char mark : deformed.Coverage)
@@ -55,7 +55,7 @@ void ExpectShifted(const Deformed& deformed, const std::vector<VolumeArray>& arr
 TEST(ElementTypes, UndeformedVolumeComesOutBitForBit)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  const AllTypes types(GetNumberOfPoints(Volume), 0.0, true);
+  const AllTypes types(GetNumberOfPoints(TypedVolume), 0.0, true);
   const DeformerCase still = Shift(glm::dvec3(0.0));
   for (const VolumeArray& array : types.Arrays)
   {
@@ -72,7 +72,7 @@ TEST(ElementTypes, UndeformedVolumeComesOutBitForBit)
 TEST(ElementTypes, ShiftByWholeVoxelsIsBitExact)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
-  const AllTypes types(GetNumberOfPoints(Volume), 0.0, true);
+  const AllTypes types(GetNumberOfPoints(TypedVolume), 0.0, true);
   for (const glm::dvec3& shift : { glm::dvec3(4.0, -7.0, 1.0), glm::dvec3(-1.0, 2.0, 30.0) })
   {
     ExpectShifted(LoadAndRun(Shift(shift), types.Arrays), types.Arrays);

@@ -12,8 +12,7 @@ using namespace deformvolume;
 namespace
 {
 
-const std::array<double, 3> NoScale{ { 1, 1, 1 } };
-const Extent Volume{ { -2, 9, 0, 8, 1, 10 } };
+const Extent FoldedVolume{ { -2, 9, 0, 8, 1, 10 } };
 
 void Check(const DeformerCase& folded, const reference::Result& reference)
 {
@@ -78,7 +77,7 @@ TEST(Folded, MirroredAlongAnAxis)
   {
     SCOPED_TRACE(axis);
     const auto jitter = MakeJitter(static_cast<unsigned int>(axis), 0.17);
-    const DeformerCase mirrored = MakeCase(Volume, NoScale,
+    const DeformerCase mirrored = MakeCase(FoldedVolume, NoScale,
       [&](const glm::dvec3& index)
       {
         glm::dvec3 moved = index;
@@ -86,7 +85,7 @@ TEST(Folded, MirroredAlongAnAxis)
         return moved;
       });
     const reference::Result reference = ResampleByReference(mirrored);
-    EXPECT_EQ(reference.NumberOfInvertedTetrahedra, 5 * GetNumberOfCells(Volume));
+    EXPECT_EQ(reference.NumberOfInvertedTetrahedra, 5 * GetNumberOfCells(FoldedVolume));
     Check(mirrored, reference);
   }
 }
@@ -150,10 +149,10 @@ TEST(Folded, FoldedLikeAPage)
     for (const double crease : { 4.0, 3.5, 4.25 })
     {
       SCOPED_TRACE(sign * crease);
-      Check(MakeCase(Volume, NoScale,
+      Check(MakeCase(FoldedVolume, NoScale,
         [=](const glm::dvec3& index)
         { return glm::dvec3(sign * std::abs(index.x - crease), index.y, index.z); }));
-      Check(MakeCase(Volume, NoScale,
+      Check(MakeCase(FoldedVolume, NoScale,
         [=](const glm::dvec3& index)
         {
           return glm::dvec3(
@@ -190,10 +189,10 @@ TEST(Folded, FlattenedVolume)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
   // One layer of cells has no thickness: its flat tetrahedra cover no samples.
-  Check(MakeCase(Volume, NoScale,
+  Check(MakeCase(FoldedVolume, NoScale,
     [](const glm::dvec3& index)
     { return glm::dvec3(index.x, index.y - (index.y > 4.0 ? 1.0 : 0.0), index.z); }));
-  Check(MakeCase(Volume, NoScale,
+  Check(MakeCase(FoldedVolume, NoScale,
     [](const glm::dvec3& index) { return glm::dvec3(index.x, 0.25 * index.x, index.z); }));
 }
 
@@ -221,8 +220,8 @@ TEST(Folded, CellsWithoutAllVerticesAtTheEdgeOfTheOutput)
   // At a blanked vertex nothing bounds the samples of the cell on that side. Some of these cells
   // win a voxel, and begin outside the output.
   std::mt19937 random(5);
-  DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(32, 1.0));
-  for (std::int64_t voxel = 0; voxel < GetNumberOfPoints(Volume); ++voxel)
+  DeformerCase jittered = MakeCase(FoldedVolume, NoScale, MakeJitter(32, 1.0));
+  for (std::int64_t voxel = 0; voxel < GetNumberOfPoints(FoldedVolume); ++voxel)
   {
     jittered.Blanked.push_back(random() % 12 == 0 ? 1 : 0);
   }
@@ -237,7 +236,7 @@ TEST(Folded, CellsWithoutAllVerticesAtTheEdgeOfTheOutput)
 
 TEST(Folded, SameFromRunToRunAndForEveryWorkGroupSize)
 {
-  const DeformerCase jittered = MakeCase(Volume, NoScale, MakeJitter(33, 1.5));
+  const DeformerCase jittered = MakeCase(FoldedVolume, NoScale, MakeJitter(33, 1.5));
   const UsualArrays usual(jittered.GetNumberOfVoxels());
   const std::vector<VolumeArray> arrays = usual.Get();
   VolumeDeformer deformer;

@@ -12,8 +12,6 @@ using namespace deformvolume;
 namespace
 {
 
-const std::array<double, 3> NoScale{ { 1, 1, 1 } };
-
 /// Copies a part of a result to a result of its own.
 Deformed Extract(const Deformed& whole, const Extent& extent, const Extent& part,
   const std::vector<VolumeArray>& arrays)

@@ -124,7 +124,7 @@ DeformerCase MakeCells(
 }
 
 /// Compares the kernels by lanes and by cells with the reference.
-void Check(const DeformerCase& cells)
+void CheckCells(const DeformerCase& cells)
 {
   const UsualArrays usual(cells.GetNumberOfVoxels());
   const std::vector<VolumeArray> arrays = usual.Get();
@@ -257,7 +257,7 @@ TEST(NarrowDecisions, CellsThatSinglePrecisionGetsWrong)
       // Each cell in the four mirrorings on x and y.
       const DeformerCase cells = MakeCells({ { 4, 4, (number + 1) / 2 } }, 4 * scale + 2,
         [&](int i, int mirror) { return Transform(GetNarrowCell(i / 8), mirror, order, scale); });
-      Check(cells);
+      CheckCells(cells);
     }
   }
 }
@@ -279,7 +279,7 @@ TEST(NarrowDecisions, SamplesOnAndBesideFaces)
             return Transform(
               MakeRandomCell(random, relation, size, 0.2), mirror, Orders[random() % 3], 1);
           });
-      Check(cells);
+      CheckCells(cells);
     }
   }
 }

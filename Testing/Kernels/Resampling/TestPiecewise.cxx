@@ -33,8 +33,6 @@ glm::dmat3 Rotate(double degrees, const glm::dvec3& axis)
   return glm::dmat3(glm::rotate(glm::dmat4(1.0), glm::radians(degrees), axis));
 }
 
-const std::array<double, 3> NoScale{ { 1, 1, 1 } };
-
 } // namespace
 
 TEST(Piecewise, JitteredVoxels)

@@ -18,7 +18,6 @@ using namespace deformvolume;
 namespace
 {
 
-const std::array<double, 3> NoScale{ { 1, 1, 1 } };
 const Extent Volume{ { -3, 17, 0, 9, 1, 8 } };
 using Deformation = std::function<glm::dvec3(const glm::dvec3&)>;
 

@@ -23,8 +23,6 @@ namespace
 
 __extension__ typedef __int128 WideInteger;
 
-const glm::dvec3 UnitSpacing(1.0);
-
 // Six times the volume of a tetrahedron, in units of 1/256 voxel. It is exact for points whose
 // coordinates are multiples of 1/256.
 WideInteger GetExactVolume(

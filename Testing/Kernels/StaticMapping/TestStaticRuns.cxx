@@ -19,8 +19,6 @@ using namespace tetrahedralMeshes;
 namespace
 {
 
-const glm::dvec3 UnitSpacing(1.0);
-
 StaticMapping Build(const Mesh& mesh, const Extent& voxels, StaticMappingForm form)
 {
   return BuildStaticMapping(voxels, UnitSpacing, mesh.Points, mesh.Tetrahedra, false, form);

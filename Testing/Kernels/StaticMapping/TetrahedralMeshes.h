@@ -22,6 +22,8 @@
 namespace tetrahedralMeshes
 {
 
+inline const glm::dvec3 UnitSpacing(1.0);
+
 struct Mesh
 {
   std::vector<glm::dvec3> Points;
