@@ -2,6 +2,7 @@
 #include "BoundaryFaces.h"
 
 #include "BarycentricMap.h"
+#include "CoincidentPoints.h"
 #include "FaceNeighbors.h"
 #include "ParallelFor.h"
 
@@ -21,83 +22,49 @@ bool IsLess(const glm::dvec3& a, const glm::dvec3& b)
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-// A face of a tetrahedron, ordered by the positions of its nodes at rest.
-struct Face
-{
-  std::array<glm::dvec3, 3> Positions;
-  bool IsAbove;         // the side of the face on which the tetrahedron lies
-  std::uint32_t Number; // as in FaceNeighbors
-
-  bool operator<(const Face& other) const
-  {
-    return std::lexicographical_compare(this->Positions.begin(), this->Positions.end(),
-      other.Positions.begin(), other.Positions.end(), IsLess);
-  }
-};
-
-Face GetFace(std::size_t face, const std::vector<glm::dvec3>& points,
+// Whether a tetrahedron lies above one of its faces. Faces with the same positions have the same
+// side above. face: as in FaceNeighbors.
+bool IsAbove(std::size_t face, const std::vector<glm::dvec3>& points,
   const std::vector<Tetrahedron>& tetrahedra)
 {
   const Tetrahedron& nodes = tetrahedra[face / 4];
-  Face found;
-  found.Number = static_cast<std::uint32_t>(face);
-  found.Positions = GetPositions(
+  const std::array<glm::dvec3, 3> q = GetPositions(
     { static_cast<std::int32_t>(face / 4), static_cast<std::int32_t>(face % 4) }, points, nodes);
-  const std::array<glm::dvec3, 3>& q = found.Positions;
-  found.IsAbove = glm::dot(glm::cross(q[1] - q[0], q[2] - q[0]),
-                    points[static_cast<std::size_t>(nodes[face % 4])] - q[0]) > 0.0;
-  return found;
+  return glm::dot(glm::cross(q[1] - q[0], q[2] - q[0]),
+           points[static_cast<std::size_t>(nodes[face % 4])] - q[0]) > 0.0;
 }
 
-// Finds the faces that have tetrahedra on one side only. The first step finds pairs of faces with
-// the same nodes, which are nearly all inner faces. No tetrahedron may be flat.
+// Finds the faces that have tetrahedra on one side only; the first one of several with the same
+// nodes. No tetrahedron may be flat.
 std::vector<std::uint32_t> FindSingleFaces(
   const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra)
 {
   const FaceNeighbors neighbors(tetrahedra, points.size());
   constexpr std::size_t step = 65536;
-  std::vector<std::vector<Face>> parts((neighbors.GetNumberOfFaces() + step - 1) / step);
+  std::vector<std::vector<std::uint32_t>> parts((neighbors.GetNumberOfFaces() + step - 1) / step);
   ParallelForParts(neighbors.GetNumberOfFaces(), step,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t face = begin; face < end; ++face)
       {
-        const std::size_t next = neighbors.GetNext(face);
-        const Face here = GetFace(face, points, tetrahedra);
-        // More than two faces with the same nodes are left to the second step.
-        if (next == face || !neighbors.IsShared(face) ||
-          GetFace(next, points, tetrahedra).IsAbove == here.IsAbove)
+        const bool isAbove = IsAbove(face, points, tetrahedra);
+        bool isSingle = true;
+        for (std::size_t next = neighbors.GetNext(face); next != face && isSingle;
+             next = neighbors.GetNext(next))
         {
-          parts[begin / step].push_back(here);
+          isSingle = next > face && IsAbove(next, points, tetrahedra) == isAbove;
+        }
+        if (isSingle)
+        {
+          parts[begin / step].push_back(static_cast<std::uint32_t>(face));
         }
       }
     });
-  std::vector<Face> faces;
-  for (const std::vector<Face>& part : parts)
-  {
-    faces.insert(faces.end(), part.begin(), part.end());
-  }
-  // The second step compares positions: where the mesh is split or its parts are not connected,
-  // faces with different nodes coincide.
-  std::sort(faces.begin(), faces.end());
   std::vector<std::uint32_t> single;
-  for (std::size_t i = 0; i < faces.size();)
+  for (const std::vector<std::uint32_t>& part : parts)
   {
-    std::size_t end = i;
-    bool isOnBoth = false;
-    std::uint32_t first = faces[i].Number;
-    for (; end < faces.size() && faces[end].Positions == faces[i].Positions; ++end)
-    {
-      isOnBoth = isOnBoth || faces[end].IsAbove != faces[i].IsAbove;
-      first = std::min(first, faces[end].Number);
-    }
-    if (!isOnBoth)
-    {
-      single.push_back(first);
-    }
-    i = end;
+    single.insert(single.end(), part.begin(), part.end());
   }
-  std::sort(single.begin(), single.end());
   return single;
 }
 
@@ -136,9 +103,14 @@ std::vector<TetrahedronFace> FindBoundaryFaces(const std::vector<glm::dvec3>& po
 {
   std::vector<Tetrahedron> chosen;
   chosen.reserve(solid.size());
+  // Where the mesh is split or its parts are not connected, faces with different nodes coincide.
+  const std::vector<std::int32_t> places = FindCoincidentPoints(points);
   for (const std::int32_t number : solid)
   {
-    chosen.push_back(tetrahedra[static_cast<std::size_t>(number)]);
+    Tetrahedron nodes = tetrahedra[static_cast<std::size_t>(number)];
+    std::transform(nodes.begin(), nodes.end(), nodes.begin(),
+      [&](std::int32_t node) { return places[static_cast<std::size_t>(node)]; });
+    chosen.push_back(nodes);
   }
   std::vector<TetrahedronFace> faces;
   for (const std::uint32_t face : FindSingleFaces(points, chosen))

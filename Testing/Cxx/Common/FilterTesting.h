@@ -17,12 +17,15 @@
 #include <vtkDataArrayRange.h>
 #include <vtkFloatArray.h>
 #include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkInformationIntegerVectorKey.h>
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPointSet.h>
 #include <vtkPoints.h>
 #include <vtkSmartPointer.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkTypeTraits.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
@@ -176,6 +179,15 @@ inline glm::dvec3 GetVector(vtkDataSet* dataSet, vtkIdType id)
   glm::dvec3 vector;
   dataSet->GetPointData()->GetVectors()->GetTuple(id, &vector.x);
   return vector;
+}
+
+/// Returns the whole extent that an algorithm announces.
+inline Extent GetWholeExtent(vtkAlgorithm* algorithm)
+{
+  Extent extent;
+  algorithm->GetOutputInformation(0)->Get(
+    vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent.data());
+  return extent;
 }
 
 /// Copies a mesh, and moves its points by their displacements.

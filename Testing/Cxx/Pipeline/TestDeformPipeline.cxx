@@ -18,14 +18,6 @@ using namespace filterTesting;
 namespace
 {
 
-Extent GetWholeExtent(vtkAlgorithm* algorithm)
-{
-  Extent extent;
-  algorithm->GetOutputInformation(0)->Get(
-    vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent.data());
-  return extent;
-}
-
 Extent Moved(const Extent& extent, int x)
 {
   Extent moved = extent;

@@ -34,14 +34,6 @@ int FindCoveredStart(Deformed& deformed)
   return -1;
 }
 
-Extent GetWholeExtent(vtkAlgorithm* algorithm)
-{
-  Extent whole;
-  algorithm->GetOutputInformation(0)->Get(
-    vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
-  return whole;
-}
-
 } // namespace
 
 TEST(DeformTime, Series)

@@ -645,8 +645,8 @@ TEST(MeshBoundaries, NoneBetweenUnmergedParts)
   EXPECT_TRUE(FindMeshBoundary(Volume, Volume, apart.Points, apart.Tetrahedra).IsEmpty());
 }
 
-// A mesh whose tetrahedra are listed twice, and a flat tetrahedron on its surface, do not change
-// the boundary.
+// A mesh whose tetrahedra, or some of them, are listed twice, and a flat tetrahedron on its
+// surface, do not change the boundary.
 TEST(MeshBoundaries, DuplicateAndFlatTetrahedraChangeNothing)
 {
   const TightMesh mesh = MakeBall(3.1);
@@ -661,6 +661,8 @@ TEST(MeshBoundaries, DuplicateAndFlatTetrahedraChangeNothing)
     }
     twice.Tetrahedra.push_back(tetrahedron);
   }
+  EXPECT_EQ(FindMeshBoundary(Volume, Volume, twice.Points, twice.Tetrahedra).Crossed, once.Crossed);
+  twice.Tetrahedra.resize(mesh.Tetrahedra.size() * 4 / 3);
   EXPECT_EQ(FindMeshBoundary(Volume, Volume, twice.Points, twice.Tetrahedra).Crossed, once.Crossed);
   TightMesh same = mesh;
   same.Tetrahedra.insert(same.Tetrahedra.end(), mesh.Tetrahedra.begin(), mesh.Tetrahedra.end());
