@@ -61,7 +61,7 @@ elseif (DEFORMVOLUME_USE_PARAVIEW)
 endif ()
 if (BUILD_TESTING)
   list(APPEND deformvolume_vtk_components
-    FiltersHybrid IOExodus TestingCore)
+    FiltersExtraction FiltersHybrid IOExodus TestingCore)
 endif ()
 
 # Functions of VTK 9.6 pass empty arguments, of which CMake 3.31 and later warn.

@@ -25,7 +25,7 @@ build=$(realpath "${DEFORMVOLUME_BUILD:-build/vtk}")
 output=$PWD/build/drivers
 tests=${DEFORMVOLUME_DRIVER_TESTS:-^(Kernels|Cxx)\.}
 # Tests that are left out, because they choose a driver or a cache themselves, or need no driver.
-others='Oclgrind|TestEnvironment|TestTetGen|TestDeformHead|TestDeformLarge'
+others='Oclgrind|TestEnvironment|TestTetGen|TestDeformLarge'
 library=$PWD/build/intel-opencl/lib
 
 icd() # prints the path of the .icd file of a driver in the folder of the system, if there is one

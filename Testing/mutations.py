@@ -330,7 +330,7 @@ MUTATIONS = {
     "world-map": ("Kernels/World/WorldMesh.cxx", "this->DisplacementsAreOld || toOutput != this->ToOutput",
                   "this->DisplacementsAreOld", ["Cxx.TestCInterface"]),
     "world-revision": ("Kernels/World/VectorField.cxx", "isSame && revision == this->Revision", "isSame",
-                       ["Cxx.TestCChainMail", "C.TestChainMail"]),
+                       ["Cxx.TestCChainMail"]),
     "world-scan": ("Kernels/World/VectorField.cxx", "changes = this->InPlace->GetChanges(this->ScannedRevision);",
                    "changes = PointRanges();", ["Cxx.TestCChainMail"]),
     "world-cut": ("Kernels/World/WorldEdits.cxx", "this->BaseCutIsOld = true;", "", ["Cxx.TestCEdits"]),

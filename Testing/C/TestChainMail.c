@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * ChainMail in C: misuse and error messages, displacements in closed form, abort, and a dv_deformer
- * that uses the displacements. Testing/Cxx/C/TestCChainMail.cxx compares all values with those of
- * vtkChainMailDeformation.
+ * ChainMail in C: misuse and error messages, displacements in closed form, and abort.
+ * Testing/Cxx/C/TestCChainMail.cxx compares all values with those of vtkChainMailDeformation.
  */
 #include "Check.h"
 #include "Cube.h"
@@ -302,39 +301,6 @@ static void TestClosedForm(void)
   dv_chainmail_destroy(chainmail);
 }
 
-/* A cut, then a smooth cut: voxels beyond the cut do not move. */
-static void TestCut(void)
-{
-  dv_chainmail* chainmail = MakeChainMail();
-  const dv_chainmail_request request = MakeRequest();
-  static uint8_t active[(SIZE - 1) * (SIZE - 1) * (SIZE - 1)];
-  static uint8_t crossed[(SIZE - 1) * (SIZE - 1) * (SIZE - 1)];
-  const float* displacements = GetDisplacements(chainmail);
-  int i = 0;
-  int way = 0;
-  for (way = 0; way < 2; ++way)
-  {
-    for (i = 0; i < (int)sizeof(active); ++i)
-    {
-      active[i] = way == 0 && i % (SIZE - 1) == 6 ? 0 : 31;
-      crossed[i] = way == 1 && i % (SIZE - 1) == 6 ? 31 : 0;
-    }
-    CHECK(dv_chainmail_set_active_tetrahedra(
-            chainmail, way == 0 ? active : NULL, way == 0 ? NULL : crossed) == DV_OK);
-    CHECK(dv_chainmail_step(chainmail, &request, NULL) == DV_OK);
-    CHECK(displacements[3 * MIDDLE] == (float)(1.5 * Spacing));
-    CHECK(displacements[3 * (MIDDLE - 1)] == (float)Spacing);
-    CHECK(displacements[3 * (MIDDLE + 1)] == 0.0F);
-    CHECK(dv_chainmail_reset(chainmail) == DV_OK);
-  }
-  /* Without the cut the link between the voxels exists again. */
-  CHECK(dv_chainmail_step(chainmail, &request, NULL) == DV_OK);
-  CHECK(dv_chainmail_set_active_tetrahedra(chainmail, NULL, NULL) == DV_OK);
-  CHECK(dv_chainmail_step(chainmail, &request, NULL) == DV_OK);
-  CHECK(displacements[3 * (MIDDLE + 1)] == (float)Spacing);
-  dv_chainmail_destroy(chainmail);
-}
-
 static int32_t Abort(double fraction, void* user)
 {
   CHECK(fraction == 0.0);
@@ -359,71 +325,13 @@ static void TestAbort(void)
   dv_chainmail_destroy(chainmail);
 }
 
-/* A dv_deformer follows the steps. Its deformation is kept when the dv_chainmail is destroyed. */
-static void TestDeform(void)
-{
-  dv_chainmail* chainmail = MakeChainMail();
-  dv_chainmail_request request = MakeRequest();
-  dv_deformer* deformer = NULL;
-  const dv_grid grid = MakeCube(SIZE);
-  static float values[VOXELS];
-  static float output[VOXELS];
-  static int8_t coverage[VOXELS];
-  void* outputs[1];
-  dv_array array;
-  dv_output bounds;
-  dv_request wanted;
-  int i = 0;
-  for (i = 0; i < VOXELS; ++i)
-  {
-    values[i] = (float)(i % SIZE);
-  }
-  outputs[0] = output;
-  memset(&array, 0, sizeof(array));
-  array.struct_size = sizeof(array);
-  array.data = values;
-  array.type = DV_FLOAT32;
-  array.components = 1;
-  memset(&bounds, 0, sizeof(bounds));
-  bounds.struct_size = sizeof(bounds);
-  bounds.bounds_mode = DV_BOUNDS_VOLUME;
-  memset(&wanted, 0, sizeof(wanted));
-  wanted.struct_size = sizeof(wanted);
-  wanted.number_of_outputs = 1;
-  wanted.outputs = outputs;
-  wanted.coverage = coverage;
-  CHECK(dv_create(&deformer) == DV_OK);
-  CHECK(dv_set_volume(deformer, &grid) == DV_OK);
-  CHECK(dv_set_arrays(deformer, 1, &array) == DV_OK);
-  CHECK(dv_set_output(deformer, &bounds) == DV_OK);
-  CHECK(dv_set_chainmail(deformer, chainmail) == DV_OK);
-  CHECK(dv_deform(deformer, &wanted, NULL) == DV_OK);
-  CHECK(output[MIDDLE + 1] == 7.0F);
-  /* The handle moves the voxel at x = 6 to x = 7. */
-  Now[0] = 7.0 * Spacing;
-  CHECK(dv_chainmail_step(chainmail, &request, NULL) == DV_OK);
-  CHECK(dv_deform(deformer, &wanted, NULL) == DV_OK);
-  CHECK(output[MIDDLE + 1] == 6.0F);
-  Now[0] = 5.0 * Spacing;
-  CHECK(dv_chainmail_step(chainmail, &request, NULL) == DV_OK);
-  CHECK(dv_deform(deformer, &wanted, NULL) == DV_OK);
-  CHECK(output[MIDDLE - 1] == 6.0F);
-  dv_chainmail_destroy(chainmail);
-  memset(output, 0, sizeof(output));
-  CHECK(dv_deform(deformer, &wanted, NULL) == DV_OK);
-  CHECK(output[MIDDLE - 1] == 6.0F);
-  dv_destroy(deformer);
-}
-
 int main(void)
 {
   TestNull();
   TestWrongMaterials();
   TestWrong();
   TestClosedForm();
-  TestCut();
   TestAbort();
-  TestDeform();
   printf("%d failures\n", Failures);
   return Failures != 0;
 }

@@ -316,6 +316,10 @@ TEST(CChainMail, Deformer)
       inC.Deform();
       Check(dv_set_chainmail(inC.Deformer, mail.ChainMail));
       inC.Compare(deformed);
+      // The deformation is kept when the dv_chainmail is destroyed.
+      dv_chainmail_destroy(mail.ChainMail);
+      mail.ChainMail = nullptr;
+      inC.Compare(deformed);
     }
   }
 }

@@ -70,10 +70,12 @@ TEST(CarveVolume, Misuse)
   carve.Filter->SetSurfaceData(bad);
   carve.Fails("not finite");
   carve.Filter->SetSurfaceData(nullptr);
-  for (const char* name : { "nothing", "pairs", "short", "words" })
+  carve.Filter->SetLabelArrayName("nothing");
+  carve.Fails("has no point array \"nothing\"");
+  for (const char* name : { "pairs", "short", "words" })
   {
     carve.Filter->SetLabelArrayName(name);
-    carve.Fails("no point array");
+    carve.Fails("Give it a numeric type, 1 component and");
   }
   carve.Filter->SetLabelArrayName("");
   for (const double radius : { 0.0, -1.0, Nan })
@@ -105,6 +107,7 @@ TEST(CarveVolume, Misuse)
 // Implicit functions of VTK, with and without known bounds, in volumes of different geometry.
 TEST(CarveVolume, Functions)
 {
+  std::vector<unsigned char> unturned;
   for (int geometry = 0; geometry < 3; ++geometry)
   {
     auto volume = MakeVolume({ { 0, 48, 1, 49, -1, 47 } });
@@ -133,6 +136,20 @@ TEST(CarveVolume, Functions)
     // The bound that Documents/cutting.md states for spheres of a radius of 20 voxels.
     EXPECT_TRUE(geometry > 0 || std::abs(GetVolume(carved) - expected) < 0.0006 * expected);
     EXPECT_LT(std::abs(GetVolume(carved) - expected), 0.01 * expected);
+    if (geometry == 1)
+    {
+      unturned = carved;
+    }
+    else if (geometry == 2)
+    {
+      // The direction changes only tetrahedra whose centroids are on the sphere.
+      int different = 0;
+      for (std::size_t cell = 0; cell < carved.size(); ++cell)
+      {
+        different += carved[cell] != unturned[cell] ? 1 : 0;
+      }
+      EXPECT_LT(different, 50);
+    }
     // The same sphere as a function without known bounds. Such functions are evaluated in one
     // thread.
     vtkNew<vtkImplicitBoolean> wrapped;

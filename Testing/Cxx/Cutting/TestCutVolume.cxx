@@ -99,6 +99,7 @@ TEST(CutVolume, Misuse)
 // Cuts do not depend on the origin, spacing and direction of the volume.
 TEST(CutVolume, Geometry)
 {
+  std::vector<unsigned char> expected;
   for (int geometry = 0; geometry < 4; ++geometry)
   {
     auto volume = MakeVolume(CutBox);
@@ -113,11 +114,16 @@ TEST(CutVolume, Geometry)
     }
     Edited<vtkCutVolume> cut;
     cut.Filter->SetInputData(volume);
-    for (const double x : { 4.5, 4.0 })
+    for (const double x : { 4.0, 4.5 })
     {
       cut.Filter->SetSheetData(MakePlaneX(volume, x));
       EXPECT_EQ(cut.CountOff(), 320);
     }
+    if (geometry == 0)
+    {
+      expected = cut.CopyMask();
+    }
+    EXPECT_EQ(cut.CopyMask(), expected);
     const glm::dvec3 corner(-20, 28, -30);
     cut.Filter->SetSheetData(
       MakePlane(volume, corner, glm::dvec3(50, -50, 0), glm::dvec3(0, 0, 70)));

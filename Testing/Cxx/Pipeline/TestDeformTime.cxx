@@ -7,6 +7,8 @@
 #include "vtkCutVolume.h"
 #include "vtkDeformGeometryFilter.h"
 
+#include <vtkAppendFilter.h>
+#include <vtkExtractTimeSteps.h>
 #include <vtkForceTime.h>
 #include <vtkImageShiftScale.h>
 #include <vtkInformation.h>
@@ -154,8 +156,29 @@ TEST(DeformTime, RestFromSameSource)
   EXPECT_TRUE(HasPart(deformed.LastError, "vtkForceTime"));
   EXPECT_EQ(deformed.Filter->GetOutput()->GetNumberOfPoints(), 0);
 
-  // The extent follows from the right times.
+  // The same error if there are filters between the source and the ports.
+  vtkNew<vtkAppendFilter> between;
+  between->SetInputConnection(deformed.Lattice->GetOutputPort());
+  vtkNew<vtkExtractTimeSteps> first;
+  first->SetInputConnection(deformed.Lattice->GetOutputPort());
+  first->AddTimeStepIndex(0);
+  deformed.Filter->SetDeformationConnection(between->GetOutputPort());
+  deformed.Filter->SetRestConnection(first->GetOutputPort());
+  deformed.Filter->UpdateTimeStep(3.0);
+  EXPECT_EQ(deformed.TakeErrors(), 1);
+  EXPECT_TRUE(HasPart(deformed.LastError,
+    "The source upstream of input port 1 was asked for the time 3, but another filter has asked it "
+    "for the time 0."));
+  // The filter in between keeps its wrong data until another time is requested.
+  deformed.Filter->SetRestConnection(start->GetOutputPort());
   deformed.Filter->SetOutputBoundsModeToDeformedBounds();
+  deformed.Filter->UpdateTimeStep(2.0);
+  EXPECT_EQ(deformed.TakeErrors(), 0) << deformed.LastError;
+  EXPECT_EQ(FindCoveredStart(deformed), 20);
+  deformed.Filter->SetDeformationConnection(deformed.Lattice->GetOutputPort());
+  deformed.Filter->SetRestConnection(later->GetOutputPort());
+
+  // The extent follows from the right times.
   deformed.Filter->UpdateTimeStep(4.0);
   EXPECT_EQ(GetWholeExtent(deformed.Filter), (Extent{ { 10, 19, 0, 8, 0, 7 } }));
   deformed.TakeErrors();

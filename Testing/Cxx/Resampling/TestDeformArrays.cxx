@@ -17,7 +17,6 @@
 
 #include <glm/common.hpp>
 
-#include <limits>
 #include <random>
 
 using namespace filterTesting;
@@ -358,31 +357,6 @@ TEST_F(DeformArrays, WrittenValues)
   mesh->Modified();
   deformed.Update();
   EXPECT_EQ(GetReported(deformed.Filter, "Volumes sent"), sent);
-}
-
-TEST_F(DeformArrays, NotANumberStaysWithinItsTetrahedra)
-{
-  auto volume = MakeImage({ { 0, 7, 0, 7, 0, 7 } });
-  AddScalars<double>(volume, "value", [](const glm::dvec3& p) { return p.x; });
-  auto* values = vtkDoubleArray::SafeDownCast(volume->GetPointData()->GetScalars());
-  values->SetValue(4 * 64 + 4 * 8 + 4, std::numeric_limits<double>::quiet_NaN());
-  auto mesh = MakeMesh(volume);
-  SetDisplacements(
-    mesh, [](const glm::dvec3& p) { return 3.0 * p + glm::dvec3(0.25, 0.5, 0.125); });
-  Deformed deformed(volume, mesh);
-  vtkImageData* output = deformed.Update();
-  int spoilt = 0;
-  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
-  {
-    if (std::isnan(deformed.GetValues()->GetComponent(id, 0)))
-    {
-      ++spoilt;
-      const glm::dvec3 rest = (GetPoint(output, id) - glm::dvec3(0.25, 0.5, 0.125)) / 3.0;
-      const glm::dvec3 distance = glm::abs(rest - 4.0);
-      EXPECT_TRUE(distance.x < 1.01 && distance.y < 1.01 && distance.z < 1.01);
-    }
-  }
-  EXPECT_GT(spoilt, 0);
 }
 
 TEST_F(DeformArrays, CellArraysAreNamedInAWarning)

@@ -264,28 +264,6 @@ TEST(DeformSamplingFactor, DenseField)
   }
 }
 
-// An undeformed volume gives the values and positions of the coarse voxels.
-TEST(DeformSamplingFactor, Identity)
-{
-  const auto volume = divisionCases::MakeVolume({ { -9, 62, 3, 29, -15, 18 } }, glm::dvec3(0.7));
-  const auto mesh = MakeMesh(volume);
-  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
-  Deformed deformed(volume, mesh);
-  deformed.Filter->SetSamplingFactor(2);
-  vtkImageData* output = deformed.Update();
-  EXPECT_EQ(GetExtent(output), (Extent{ { -4, 31, 2, 14, -7, 9 } }));
-  EXPECT_EQ(
-    deformed.Filter->GetNumberOfCoveredVoxels(), deformed.Filter->GetOutput()->GetNumberOfPoints());
-  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); id += 13)
-  {
-    double point[3];
-    output->GetPoint(id, point);
-    const vtkIdType from = volume->FindPoint(point);
-    EXPECT_EQ(output->GetPointData()->GetArray("double")->GetComponent(id, 0),
-      volume->GetPointData()->GetArray("double")->GetComponent(from, 0));
-  }
-}
-
 /// A filter whose SamplingFactor changes, and checks of the data that it keeps.
 class Switched
 {

@@ -438,25 +438,6 @@ TEST(DeviceVectors, Bounds)
   EXPECT_FALSE(FindDeformedBounds(grid, field, *shared)) << "not finite";
 }
 
-// One mesh moves volumes of different spacings.
-TEST(DeviceVectors, SeveralVolumes)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  const Subject fine;
-  const Subject coarse(Extent{ { 0, 21, 0, 18, -1, 17 } }, { { 0.5, 0.5, 1.0 } });
-  const Matrix half{ { 0.5, 0, 0, 0, 0.5, 0, 0, 0, 1 } };
-  const std::vector<float> vectors = MakeVectors(fine.Points, 4);
-  const Vectors shared = MakeOnDevice(vectors);
-  VolumeDeformer one;
-  VolumeDeformer other;
-  fine.LoadInto(one, Route::Mesh);
-  coarse.LoadInto(other, Route::Mesh);
-  one.SetNodeDisplacements(shared);
-  other.SetNodeDisplacements(shared, half);
-  EXPECT_EQ(fine.Run(one), fine.RunFresh(Route::Mesh, vectors, Identity));
-  EXPECT_EQ(coarse.Run(other), coarse.RunFresh(Route::Mesh, vectors, half));
-}
-
 // Two drags: the displacements of one stay on the device, and those of the other are copied to the
 // host.
 TEST(DeviceVectors, OutputOfChainMail)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copies between the host and vectors on a device with its own memory.
-#include "ChainMailModel.h"
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 #include "DeviceVectors.h"
@@ -13,7 +12,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <iostream>
 #include <limits>
 #include <memory>
 #include <random>
@@ -45,7 +43,6 @@ protected:
   std::vector<float> Displacements = this->Case.GetDisplacements();
   std::vector<std::uint16_t> Values = MakeRandomValues<std::uint16_t>(this->Points, 3);
   std::vector<VolumeArray> Arrays{ MakeArray(this->Values) };
-  const std::array<double, 9> Half{ { 0.5, 0, 0, 0, 0.5, 0, 0, 0, 0.5 } };
 };
 
 } // namespace
@@ -72,98 +69,6 @@ TEST_F(Transfers, WrittenVectorsAreCopiedOnce)
   vectors->Read();
   EXPECT_EQ(FakeDriver::Get().BytesRead, 7U * 12U) << "only the two ranges must be read";
   EXPECT_EQ(std::memcmp(vectors->Read(), this->Displacements.data(), this->Bytes), 0);
-}
-
-// An image and its segmentation, which has another spacing.
-TEST_F(Transfers, SeveralVolumesTakeOneUpload)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  VolumeDeformer deformers[2];
-  for (VolumeDeformer& deformer : deformers)
-  {
-    Load(deformer, this->Case, this->Arrays, Route::Mesh);
-    RunDeformer(deformer, this->Case, this->Arrays);
-  }
-  const auto vectors = std::make_shared<DeviceVectors>("", this->Points);
-  for (int frame = 0; frame < 3; ++frame)
-  {
-    this->Reset();
-    vectors->Write(this->Displacements.data());
-    deformers[0].SetNodeDisplacements(vectors);
-    deformers[1].SetNodeDisplacements(vectors, this->Half);
-    EXPECT_EQ(FakeDriver::Get().BytesWritten, this->Bytes);
-    EXPECT_LE(FakeDriver::Get().BytesRead, Few);
-  }
-  // Displacements on the host are sent for each volume separately.
-  this->Reset();
-  for (VolumeDeformer& deformer : deformers)
-  {
-    deformer.SetNodeDisplacements(this->Displacements.data());
-  }
-  EXPECT_GE(FakeDriver::Get().BytesWritten, 2 * this->Bytes);
-}
-
-TEST_F(Transfers, FieldsPassNothingThroughTheHost)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  VolumeDeformer deformer;
-  Load(deformer, this->Case, this->Arrays, Route::Field);
-  const auto vectors = std::make_shared<DeviceVectors>("", this->Points);
-  vectors->Write(this->Displacements.data());
-  DisplacementField field;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    field.Dimensions[axis] = static_cast<int>(GetSize(this->Case.VoxelGrid.VertexExtent, axis));
-    field.IndexToField[4 * axis + 3] = -this->Case.VoxelGrid.VertexExtent[2 * axis];
-  }
-  this->Reset();
-  deformer.SetDisplacementField(field, vectors);
-  field.ToDisplacement = this->Half;
-  deformer.SetDisplacementField(field, vectors);
-  EXPECT_LE(FakeDriver::Get().BytesWritten, Few);
-  EXPECT_LE(FakeDriver::Get().BytesRead, Few);
-}
-
-// In a drag, the displacements of the voxels are not copied to or from the host.
-TEST_F(Transfers, ChainMailPassesNothingThroughTheHost)
-{
-  SKIP_WITHOUT_DOUBLE_PRECISION()
-  const Extent extent{ { 0, 47, 0, 47, 0, 47 } };
-  const DeformerCase large =
-    MakeCase(extent, { { 1, 1, 1 } }, [](const glm::dvec3& index) { return index; });
-  const auto points = static_cast<std::size_t>(large.GetNumberOfVoxels());
-  const auto values = MakeRandomValues<std::uint16_t>(points, 3);
-  const std::vector<VolumeArray> arrays{ MakeArray(values) };
-  VolumeDeformer deformer;
-  Load(deformer, large, arrays, Route::Field);
-  RunDeformer(deformer, large, arrays);
-  DisplacementField field;
-  field.Dimensions = { { 48, 48, 48 } };
-  field.ToDisplacement = this->Half;
-  ChainMailModel model;
-  model.SetVoxelGrid(extent, { { 2, 0, 0, 0, 2, 0, 0, 0, 2 } });
-  const auto vectors = std::make_shared<DeviceVectors>("", points);
-  model.SetOutput(vectors);
-  const std::uint64_t held = deformer.GetDeviceMemory();
-  for (int step = 1; step <= 3; ++step)
-  {
-    ChainMailRequest request;
-    request.Handles.resize(1);
-    request.Handles[0].RestPosition = { { 24, 24, 24 } };
-    request.Handles[0].Displacement = { { 4.0 * step, 0, 0 } };
-    this->Reset();
-    const ChainMailReport report = model.Step(request);
-    deformer.SetDisplacementField(field, vectors);
-    const std::uint64_t moved = 12 * static_cast<std::uint64_t>(report.NumberOfMovedVoxels);
-    ASSERT_GT(moved, 12U * 512U);
-    // Lists of blocks, and results of kernels: a few numbers per block of 512 voxels.
-    EXPECT_LT(FakeDriver::Get().BytesRead, moved / 16);
-    EXPECT_LT(FakeDriver::Get().BytesWritten, moved / 16);
-    std::cout << "Step " << step << ": " << moved << " bytes of displacements have changed, "
-              << FakeDriver::Get().BytesRead << " were read and " << FakeDriver::Get().BytesWritten
-              << " written\n";
-  }
-  EXPECT_EQ(deformer.GetDeviceMemory(), held);
 }
 
 // Points with reported changes cause a partial update of the output. The box of the changes is

@@ -18,7 +18,7 @@ using namespace deformvolume;
 namespace
 {
 
-const Extent Volume{ { -3, 17, 0, 9, 1, 8 } };
+const Extent CutExtent{ { -3, 17, 0, 9, 1, 8 } };
 using Deformation = std::function<glm::dvec3(const glm::dvec3&)>;
 
 // Results with the cut and without it.
@@ -52,7 +52,7 @@ TEST(SmoothCuts, MisuseIsAnError)
 {
   VolumeDeformer deformer;
   deformer.SetDevice("");
-  DeformerCase still = MakeCase(Volume, NoScale, [](const glm::dvec3& index) { return index; });
+  DeformerCase still = MakeCase(CutExtent, NoScale, [](const glm::dvec3& index) { return index; });
   CutAtRandom(still, 1, 2);
   EXPECT_THROW(deformer.SetCut(still.Crossed.data(), still.CutDistances.data()), Error);
   const UsualArrays usual(still.GetNumberOfVoxels());
@@ -82,8 +82,8 @@ TEST(SmoothCuts, InvisibleAtRest)
   for (const double scale : { 1.0, 2.0, 0.5 })
   {
     SCOPED_TRACE(scale);
-    DeformerCase cut = MakeCase(
-      Volume, { { scale, scale, scale } }, [=](const glm::dvec3& index) { return index * scale; });
+    DeformerCase cut = MakeCase(CutExtent, { { scale, scale, scale } },
+      [=](const glm::dvec3& index) { return index * scale; });
     const UsualArrays usual(cut.GetNumberOfVoxels());
     const std::vector<VolumeArray> arrays = usual.Get();
     for (unsigned int seed = 0; seed < 4; ++seed)
@@ -247,7 +247,7 @@ TEST(SmoothCuts, AffineMotionsLeaveTheCutClosed)
     const glm::dvec3 shift(0.4 * seed, -0.3, 0.77);
     const auto sheet = [](const glm::dvec3& i) { return i.x - 7.3 + 0.2 * i.y - 0.4 * i.z; };
     DeformerCase cut =
-      MakeCase(Volume, NoScale, [&](const glm::dvec3& index) { return matrix * index + shift; });
+      MakeCase(CutExtent, NoScale, [&](const glm::dvec3& index) { return matrix * index + shift; });
     CutAlong(cut, sheet, [seed](const glm::dvec3& cell) { return seed % 2 == 0 || cell.y < 5; });
     const UsualArrays usual(cut.GetNumberOfVoxels());
     const Pair both = RunBoth(cut, usual.Get(), GetSomeRoute(seed));
