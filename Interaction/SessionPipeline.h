@@ -67,7 +67,6 @@ public:
 
   vtkImageData* GetVolume() { return this->Volume; }
   vtkDataSet* GetDeformation();
-  vtkDeformVolumeFilter* GetResampler() { return this->Resampler; }
   int GetModel() const { return this->Model; }
   /// Number of voxels that ChainMail has moved in the last step; 0 with other models.
   vtkIdType GetNumberOfMovedVoxels();

@@ -8,7 +8,6 @@
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDeformGeometryFilter.h"
-#include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
@@ -18,16 +17,12 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <mutex>
-#include <vector>
+#include <stdexcept>
 
 namespace
 {
@@ -148,104 +143,70 @@ bool SearchField(vtkImageData* field, const glm::dvec3& deformed, glm::dvec3& re
   return false;
 }
 
-// The nodes of a tetrahedron of four or ten nodes, at rest and deformed. A tetrahedron of ten nodes
-// gets an eleventh node in its middle, as in vtkDeformVolumeFilter.
-struct CellNodes
-{
-  std::vector<glm::dvec3> Rest;
-  std::vector<glm::dvec3> Deformed;
-};
-
-using Positions = std::vector<glm::dvec3>;
-using Corners = std::array<std::size_t, 4>;
-
-constexpr std::size_t LinearNodes = 4;
-constexpr std::size_t QuadraticNodes = 10;
-
-// Returns the tetrahedra into which a cell is split.
-const std::vector<Corners>& GetParts(std::size_t numberOfNodes)
-{
-  static const std::vector<Corners> none;
-  static const std::vector<Corners> linear = { { { 0, 1, 2, 3 } } };
-  // Four tetrahedra at the corners, and eight around the middle.
-  static const std::vector<Corners> quadratic = { { { 0, 4, 6, 7 } }, { { 1, 4, 5, 8 } },
-    { { 2, 5, 6, 9 } }, { { 3, 7, 8, 9 } }, { { 10, 4, 6, 7 } }, { { 10, 4, 5, 8 } },
-    { { 10, 5, 6, 9 } }, { { 10, 7, 8, 9 } }, { { 10, 4, 5, 6 } }, { { 10, 4, 8, 7 } },
-    { { 10, 5, 9, 8 } }, { { 10, 6, 9, 7 } } };
-  return numberOfNodes == LinearNodes ? linear : numberOfNodes == QuadraticNodes ? quadratic : none;
-}
-
-void AddMiddle(Positions& positions)
-{
-  glm::dvec3 middle(0.0);
-  for (std::size_t i = 0; i < QuadraticNodes; ++i)
-  {
-    middle += (i < LinearNodes ? -0.125 : 0.25) * positions[i];
-  }
-  positions.push_back(middle);
-}
-
-CellNodes ReadCell(vtkDataSet* mesh, vtkDataArray* vectors, vtkIdList* ids)
-{
-  CellNodes nodes;
-  for (const vtkIdType id : *ids)
-  {
-    nodes.Rest.push_back(GetPosition(mesh, id));
-    nodes.Deformed.push_back(nodes.Rest.back() + GetVector(vectors, id));
-  }
-  if (nodes.Rest.size() == QuadraticNodes)
-  {
-    AddMiddle(nodes.Rest);
-    AddMiddle(nodes.Deformed);
-  }
-  return nodes;
-}
-
-// Maps a position by the tetrahedron that contains it, or else by the nearest one: that whose
-// smallest barycentric coordinate is the largest.
-glm::dvec3 MapInMesh(vtkDataSet* mesh, const glm::dvec3& position, Positions CellNodes::*from,
-  Positions CellNodes::*to)
+// Returns the displacement of the node whose deformed position is the nearest.
+glm::dvec3 FindNearestDisplacement(vtkDataSet* mesh, const glm::dvec3& deformed)
 {
   vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
-  double best = -std::numeric_limits<double>::infinity();
-  glm::dvec3 found = position;
-  vtkNew<vtkIdList> ids;
-  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells() && best < 0.0; ++cell)
+  double least = std::numeric_limits<double>::infinity();
+  glm::dvec3 nearest(0.0);
+  for (vtkIdType id = 0; id < mesh->GetNumberOfPoints(); ++id)
   {
-    mesh->GetCellPoints(cell, ids);
-    const std::vector<Corners>& parts = GetParts(static_cast<std::size_t>(ids->GetNumberOfIds()));
-    const CellNodes nodes = parts.empty() ? CellNodes() : ReadCell(mesh, vectors, ids);
-    for (const Corners& part : parts)
+    const glm::dvec3 displacement = GetVector(vectors, id);
+    const double distance = glm::distance(GetPosition(mesh, id) + displacement, deformed);
+    if (distance < least)
     {
-      const auto get = [&](Positions CellNodes::*positions, std::size_t i) -> const glm::dvec3&
-      { return (nodes.*positions)[part[i]]; };
-      const glm::dvec3& origin = get(from, 0);
-      const glm::dmat3 edges(get(from, 1) - origin, get(from, 2) - origin, get(from, 3) - origin);
-      const glm::dvec3 weights = glm::inverse(edges) * (position - origin);
-      const double least =
-        std::min({ weights.x, weights.y, weights.z, 1.0 - weights.x - weights.y - weights.z });
-      if (least > best) // false if the tetrahedron is flat
-      {
-        best = least;
-        found = get(to, 0) + weights.x * (get(to, 1) - get(to, 0)) +
-          weights.y * (get(to, 2) - get(to, 0)) + weights.z * (get(to, 3) - get(to, 0));
-      }
+      least = distance;
+      nearest = displacement;
     }
   }
-  return found;
+  return nearest;
 }
 
-// As FindRestPosition(), but if a field is folded or torn, it does not search for the nearest
-// voxel.
-glm::dvec3 EstimateRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed)
+// Moves the points of a sheet with a mesh, to rest or from rest.
+void MoveWithMesh(vtkPolyData* sheet, vtkDataSet* mesh, bool isToRest)
 {
-  if (auto* field = vtkImageData::SafeDownCast(deformation))
+  vtkNew<vtkDeformGeometryFilter> filter;
+  vtkNew<vtkCallbackCommand> nothing; // without it, points outside are a warning
+  filter->AddObserver(vtkCommand::WarningEvent, nothing);
+  filter->AddObserver(vtkCommand::ErrorEvent, nothing);
+  filter->SetInputData(sheet);
+  filter->SetDeformationData(mesh);
+  filter->SetOutsideModeToExtrapolate();
+  filter->SetInverse(isToRest);
+  filter->Update();
+  auto* moved = vtkPolyData::SafeDownCast(filter->GetOutput());
+  vtkPoints* points = sheet->GetPoints();
+  if (!moved || moved->GetNumberOfPoints() != points->GetNumberOfPoints())
   {
-    glm::dvec3 rest;
-    SearchField(field, deformed, rest);
-    return rest;
+    throw std::runtime_error("The deformation mesh cannot move positions. Check that its "
+                             "displacements are finite.");
   }
-  return MapInMesh(deformation, deformed, &CellNodes::Deformed, &CellNodes::Rest);
+  vtkDataArray* isMoved = moved->GetPointData()->GetArray("vtkValidPointMask");
+  for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
+  {
+    if (isMoved->GetComponent(id, 0) != 0.0)
+    {
+      points->SetPoint(id, moved->GetPoint(id));
+    }
+    else
+    {
+      // Far outside the tissue, where the extrapolated map may have no inverse.
+      const glm::dvec3 position = GetPosition(sheet, id);
+      const glm::dvec3 rest = position - FindNearestDisplacement(mesh, position);
+      points->SetPoint(id, &rest.x);
+    }
+  }
+}
+
+glm::dvec3 MoveWithMesh(const glm::dvec3& position, vtkDataSet* mesh, bool isToRest)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->InsertNextPoint(&position.x);
+  vtkNew<vtkPolyData> sheet;
+  sheet->SetPoints(points);
+  MoveWithMesh(sheet, mesh, isToRest);
+  return GetPosition(sheet, 0);
 }
 
 } // namespace
@@ -255,7 +216,7 @@ glm::dvec3 deformvolume::FindRestPosition(vtkDataSet* deformation, const glm::dv
   auto* field = vtkImageData::SafeDownCast(deformation);
   if (!field)
   {
-    return EstimateRestPosition(deformation, deformed);
+    return MoveWithMesh(deformed, deformation, true);
   }
   glm::dvec3 rest;
   return SearchField(field, deformed, rest) ? rest : FindNearestVoxel(field, deformed);
@@ -263,11 +224,8 @@ glm::dvec3 deformvolume::FindRestPosition(vtkDataSet* deformation, const glm::dv
 
 glm::dvec3 deformvolume::FindDeformedPosition(vtkDataSet* deformation, const glm::dvec3& rest)
 {
-  if (auto* field = vtkImageData::SafeDownCast(deformation))
-  {
-    return rest + Interpolate(field, rest);
-  }
-  return MapInMesh(deformation, rest, &CellNodes::Rest, &CellNodes::Deformed);
+  auto* field = vtkImageData::SafeDownCast(deformation);
+  return field ? rest + Interpolate(field, rest) : MoveWithMesh(rest, deformation, false);
 }
 
 vtkSmartPointer<vtkPolyData> deformvolume::MoveToRest(vtkPolyData* sheet, vtkDataSet* deformation)
@@ -283,37 +241,18 @@ vtkSmartPointer<vtkPolyData> deformvolume::MoveToRest(vtkPolyData* sheet, vtkDat
   fine->Update();
   const auto rest = vtkSmartPointer<vtkPolyData>::New();
   rest->DeepCopy(fine->GetOutput());
-  vtkPoints* points = rest->GetPoints();
-  vtkPoints* moved = nullptr;
-  vtkDataArray* isMoved = nullptr;
-  vtkNew<vtkDeformGeometryFilter> inverse; // is faster than estimates in a mesh
-  if (!vtkImageData::SafeDownCast(deformation))
+  auto* field = vtkImageData::SafeDownCast(deformation);
+  if (!field)
   {
-    vtkNew<vtkCallbackCommand> nothing; // without it, points outside are a warning
-    inverse->AddObserver(vtkCommand::WarningEvent, nothing);
-    inverse->AddObserver(vtkCommand::ErrorEvent, nothing);
-    inverse->SetInputData(fine->GetOutput());
-    inverse->SetDeformationData(deformation);
-    inverse->SetOutsideMode(vtkDeformGeometryFilter::EXTRAPOLATE);
-    inverse->InverseOn();
-    inverse->Update();
-    auto* output = vtkPolyData::SafeDownCast(inverse->GetOutput());
-    moved = output && output->GetNumberOfPoints() > 0 ? output->GetPoints() : nullptr;
-    isMoved = moved ? output->GetPointData()->GetArray("vtkValidPointMask") : nullptr;
+    MoveWithMesh(rest, deformation, true);
+    return rest;
   }
+  vtkPoints* points = rest->GetPoints();
   for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
   {
+    // Where a field is folded or torn, the last estimate is sufficient for a sheet.
     glm::dvec3 position;
-    points->GetPoint(id, &position.x);
-    if (isMoved && isMoved->GetComponent(id, 0) != 0.0)
-    {
-      moved->GetPoint(id, &position.x);
-    }
-    else
-    {
-      // Points of a sheet can lie outside the tissue, where an estimate is sufficient.
-      position = EstimateRestPosition(deformation, position);
-    }
+    SearchField(field, GetPosition(rest, id), position);
     points->SetPoint(id, &position.x);
   }
   return rest;
