@@ -2,6 +2,7 @@
 #include "vtkLatticeTetrahedraSource.h"
 
 #include "AbortCheck.h"
+#include "Error.h"
 #include "FiveTetrahedra.h"
 #include "PieceRequest.h"
 
@@ -20,10 +21,14 @@
 #include <glm/glm.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <new>
+#include <sstream>
 #include <string>
+
+using deformvolume::Error;
 
 vtkStandardNewMacro(vtkLatticeTetrahedraSource);
 
@@ -33,100 +38,86 @@ namespace
 // Corner and edge vectors from node to node, in world coordinates.
 struct Lattice
 {
+  std::array<int, 3> Nodes{}; // their number on each axis
   glm::dvec3 Corner = glm::dvec3(0.0);
   glm::dmat3 Steps = glm::dmat3(0.0);
+
+  void SetBounds(const double bounds[6], double margin)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double low = bounds[2 * axis] - margin;
+      const double high = bounds[2 * axis + 1] + margin;
+      if (!std::isfinite(low) || !std::isfinite(high) || !std::isfinite(high - low))
+      {
+        throw Error("Bounds are not finite. Set Bounds to a finite box or connect a volume.");
+      }
+      if (bounds[2 * axis + 1] <= bounds[2 * axis])
+      {
+        throw Error(
+          "Bounds are empty: the maximum has to be greater than the minimum on every axis.");
+      }
+      this->Corner[axis] = low;
+      this->Steps[axis][axis] = (high - low) / (this->Nodes[axis] - 1);
+    }
+  }
+
+  void SetVolume(vtkImageData* volume, const int extent[6], double margin)
+  {
+    const double* spacing = volume->GetSpacing();
+    const double* origin = volume->GetOrigin();
+    vtkMatrix3x3* direction = volume->GetDirectionMatrix();
+    this->Corner = glm::dvec3(origin[0], origin[1], origin[2]);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int first = extent[2 * axis];
+      const int last = extent[2 * axis + 1];
+      if (last <= first)
+      {
+        throw Error("The volume has fewer than two voxels on axis " + std::to_string(axis) +
+          ". A lattice of a volume needs two on every axis; set Bounds and disconnect the volume "
+          "(in ParaView, take the source Tetrahedral Lattice) to mesh a box of your own.");
+      }
+      const glm::dvec3 unit(direction->GetElement(0, axis), direction->GetElement(1, axis),
+        direction->GetElement(2, axis));
+      const glm::dvec3 voxel = unit * spacing[axis];
+      const double length = glm::length(voxel);
+      if (!(length > 0.0) || !std::isfinite(length))
+      {
+        throw Error("The volume's spacing or direction matrix is not valid on axis " +
+          std::to_string(axis) + ".");
+      }
+      const double border = margin / length;
+      this->Corner += voxel * (first - border);
+      this->Steps[axis] = voxel * ((last - first + 2.0 * border) / (this->Nodes[axis] - 1));
+    }
+  }
+
+  // Makes the cells cubes, which changes the number of nodes.
+  void MakeCubes()
+  {
+    // Rounding errors must not add a cell.
+    constexpr double tolerance = 1e-9;
+    double edge = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      edge = std::max(edge, glm::length(this->Steps[axis]));
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      glm::dvec3& step = this->Steps[axis];
+      const double length = glm::length(step);
+      if (length < edge * (1.0 - tolerance))
+      {
+        const double needed = (this->Nodes[axis] - 1) * length / edge;
+        const double cells = std::max(1.0, std::ceil(needed * (1.0 - tolerance)));
+        step *= edge / length;
+        this->Corner -= step * (0.5 * std::max(0.0, cells - needed));
+        this->Nodes[axis] = static_cast<int>(cells) + 1;
+      }
+    }
+  }
 };
-
-glm::dvec3 NodeSteps(const int nodes[3])
-{
-  return glm::dvec3(nodes[0] - 1, nodes[1] - 1, nodes[2] - 1);
-}
-
-// Returns an error message; empty on success.
-std::string FrameOfBounds(
-  const double bounds[6], double margin, const int nodes[3], Lattice& lattice)
-{
-  const glm::dvec3 low(bounds[0] - margin, bounds[2] - margin, bounds[4] - margin);
-  const glm::dvec3 high(bounds[1] + margin, bounds[3] + margin, bounds[5] + margin);
-  const glm::dvec3 size = high - low;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (!std::isfinite(low[axis]) || !std::isfinite(high[axis]) || !std::isfinite(size[axis]))
-    {
-      return "Bounds are not finite. Set Bounds to a finite box or connect a volume.";
-    }
-    if (bounds[2 * axis + 1] <= bounds[2 * axis])
-    {
-      return "Bounds are empty: the maximum has to be greater than the minimum on every axis.";
-    }
-  }
-  const glm::dvec3 step = size / NodeSteps(nodes);
-  lattice.Corner = low;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    lattice.Steps[axis][axis] = step[axis];
-  }
-  return std::string();
-}
-
-std::string FrameOfVolume(
-  vtkImageData* volume, const int extent[6], double margin, const int nodes[3], Lattice& lattice)
-{
-  const double* spacing = volume->GetSpacing();
-  const double* origin = volume->GetOrigin();
-  vtkMatrix3x3* direction = volume->GetDirectionMatrix();
-  const glm::dvec3 steps = NodeSteps(nodes);
-  lattice.Corner = glm::dvec3(origin[0], origin[1], origin[2]);
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const int first = extent[2 * axis];
-    const int last = extent[2 * axis + 1];
-    if (last <= first)
-    {
-      return "The volume has fewer than two voxels on axis " + std::to_string(axis) +
-        ". A lattice of a volume needs two on every axis; set Bounds and disconnect the volume (in "
-        "ParaView, take the source Tetrahedral Lattice) to mesh a box of your own.";
-    }
-    const glm::dvec3 unit(direction->GetElement(0, axis), direction->GetElement(1, axis),
-      direction->GetElement(2, axis));
-    const glm::dvec3 voxel = unit * spacing[axis];
-    const double length = glm::length(voxel);
-    if (!(length > 0.0) || !std::isfinite(length))
-    {
-      return "The volume's spacing or direction matrix is not valid on axis " +
-        std::to_string(axis) + ".";
-    }
-    const double border = margin / length;
-    lattice.Corner += voxel * (first - border);
-    lattice.Steps[axis] = voxel * ((last - first + 2.0 * border) / steps[axis]);
-  }
-  return std::string();
-}
-
-// Makes the cells of a lattice cubes. nodes: number of nodes on each axis, which is changed.
-void MakeCubes(Lattice& lattice, int nodes[3])
-{
-  // Rounding errors must not add a cell.
-  constexpr double tolerance = 1e-9;
-  double edge = 0.0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    edge = std::max(edge, glm::length(lattice.Steps[axis]));
-  }
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    glm::dvec3& step = lattice.Steps[axis];
-    const double length = glm::length(step);
-    if (length < edge * (1.0 - tolerance))
-    {
-      const double needed = (nodes[axis] - 1) * length / edge;
-      const double cells = std::max(1.0, std::ceil(needed * (1.0 - tolerance)));
-      step *= edge / length;
-      lattice.Corner -= step * (0.5 * std::max(0.0, cells - needed));
-      nodes[axis] = static_cast<int>(cells) + 1;
-    }
-  }
-}
 
 // Whether the memory of the output can be allocated. If the arrays failed to allocate, their
 // message would not say what to do.
@@ -139,6 +130,50 @@ bool CanAllocate(double bytes)
   void* memory = ::operator new(static_cast<std::size_t>(bytes), std::nothrow);
   ::operator delete(memory);
   return memory != nullptr;
+}
+
+// Returns the number of tetrahedra. Throws an Error if they cannot be stored.
+vtkIdType CountTetrahedra(const std::array<int, 3>& nodes)
+{
+  const double nodeCount = 1.0 * nodes[0] * nodes[1] * nodes[2];
+  const double count = 5.0 * (nodes[0] - 1.0) * (nodes[1] - 1.0) * (nodes[2] - 1.0);
+  const double bytes = nodeCount * 3 * sizeof(double) + count * (5 * sizeof(vtkIdType) + 1);
+  if (nodeCount > VTK_INT_MAX || 4 * count > static_cast<double>(VTK_ID_MAX) || !CanAllocate(bytes))
+  {
+    std::ostringstream text;
+    text << "A lattice of " << nodes[0] << " x " << nodes[1] << " x " << nodes[2] << " nodes takes "
+         << bytes / (1024.0 * 1024.0 * 1024.0)
+         << " GiB, which is more than can be stored. Use fewer nodes.";
+    throw Error(text.str());
+  }
+  return static_cast<vtkIdType>(count);
+}
+
+// Writes the vertices of the tetrahedra of a cell. Returns the position after them.
+vtkIdType* WriteCell(
+  int x, int y, int z, const std::array<int, 3>& nodes, bool isMirrored, vtkIdType* vertex)
+{
+  static const int table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+  const vtkIdType rowLength = nodes[0];
+  const vtkIdType slabLength = rowLength * nodes[1];
+  vtkIdType corners[8];
+  for (int v = 0; v < 8; ++v)
+  {
+    const int offset = v ^ DEFORMVOLUME_MIRROR(x, y, z);
+    corners[v] =
+      x + (offset & 1) + rowLength * (y + (offset >> 2)) + slabLength * (z + (offset >> 1 & 1));
+  }
+  // Corner tetrahedra are upright in cells of even parity, the central one in the others.
+  const bool cornersUpright = (((x + y + z) & 1) == 0) != isMirrored;
+  for (int t = 0; t < 5; ++t)
+  {
+    const bool upright = (t < 4) == cornersUpright;
+    *vertex++ = corners[table[t][0]];
+    *vertex++ = corners[table[t][1]];
+    *vertex++ = corners[table[t][upright ? 2 : 3]];
+    *vertex++ = corners[table[t][upright ? 3 : 2]];
+  }
+  return vertex;
 }
 
 } // namespace
@@ -195,71 +230,59 @@ int vtkLatticeTetrahedraSource::RequestData(
   }
   this->Incomplete = true;
 
-  int nodes[3];
-  std::copy_n(this->NumberOfNodes, 3, nodes);
-  if (*std::min_element(nodes, nodes + 3) < 2)
-  {
-    vtkErrorMacro("NumberOfNodes is " << nodes[0] << ", " << nodes[1] << ", " << nodes[2]
-                                      << ". A lattice needs at least 2 nodes on every axis.");
-    return 0;
-  }
-
   Lattice lattice;
-  std::string problem;
-  if (vtkImageData* volume = vtkImageData::GetData(inputVector[0]))
+  std::copy_n(this->NumberOfNodes, 3, lattice.Nodes.begin());
+  double volumeOfCell = 0.0;
+  vtkIdType numberOfTetrahedra = 0;
+  try
   {
-    // The whole extent, so that a piece of the volume gets the same lattice as all of it.
-    vtkInformation* info = inputVector[0]->GetInformationObject(0);
-    int extent[6];
-    volume->GetExtent(extent);
-    if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+    if (*std::min_element(lattice.Nodes.begin(), lattice.Nodes.end()) < 2)
     {
-      info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+      std::ostringstream text;
+      text << "NumberOfNodes is " << lattice.Nodes[0] << ", " << lattice.Nodes[1] << ", "
+           << lattice.Nodes[2] << ". A lattice needs at least 2 nodes on every axis.";
+      throw Error(text.str());
     }
-    problem = FrameOfVolume(volume, extent, this->Margin, nodes, lattice);
+    if (vtkImageData* volume = vtkImageData::GetData(inputVector[0]))
+    {
+      // The whole extent, so that a piece of the volume gets the same lattice as all of it.
+      vtkInformation* info = inputVector[0]->GetInformationObject(0);
+      int extent[6];
+      volume->GetExtent(extent);
+      if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+      {
+        info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
+      }
+      lattice.SetVolume(volume, extent, this->Margin);
+    }
+    else
+    {
+      lattice.SetBounds(this->Bounds, this->Margin);
+    }
+    volumeOfCell = glm::determinant(lattice.Steps);
+    if (volumeOfCell == 0.0 || !std::isfinite(volumeOfCell))
+    {
+      throw Error("The lattice has no volume: its axes lie in one plane, or it is too small or too "
+                  "large for double precision.");
+    }
+    if (this->EqualSpacing)
+    {
+      lattice.MakeCubes();
+    }
+    numberOfTetrahedra = CountTetrahedra(lattice.Nodes);
   }
-  else
+  catch (const Error& error)
   {
-    problem = FrameOfBounds(this->Bounds, this->Margin, nodes, lattice);
-  }
-  const double volumeOfStep = problem.empty() ? glm::determinant(lattice.Steps) : 1.0;
-  if (problem.empty() && (volumeOfStep == 0.0 || !std::isfinite(volumeOfStep)))
-  {
-    problem = "The lattice has no volume: its axes lie in one plane, or it is too small or too "
-              "large for double precision.";
-  }
-  if (!problem.empty())
-  {
-    vtkErrorMacro(<< problem);
-    return 0;
-  }
-  if (this->EqualSpacing)
-  {
-    MakeCubes(lattice, nodes);
-  }
-
-  const double nodeCount = 1.0 * nodes[0] * nodes[1] * nodes[2];
-  const double tetrahedronCount = 5.0 * (nodes[0] - 1.0) * (nodes[1] - 1.0) * (nodes[2] - 1.0);
-  const double bytes =
-    nodeCount * 3 * sizeof(double) + tetrahedronCount * (5 * sizeof(vtkIdType) + 1);
-  if (nodeCount > VTK_INT_MAX || 4 * tetrahedronCount > static_cast<double>(VTK_ID_MAX) ||
-    !CanAllocate(bytes))
-  {
-    vtkErrorMacro("A lattice of " << nodes[0] << " x " << nodes[1] << " x " << nodes[2]
-                                  << " nodes takes " << bytes / (1024.0 * 1024.0 * 1024.0)
-                                  << " GiB, which is more than can be stored. Use fewer "
-                                     "nodes.");
+    vtkErrorMacro(<< error.what());
     return 0;
   }
 
-  const vtkIdType rowLength = nodes[0];
-  const vtkIdType slabLength = rowLength * nodes[1];
+  const std::array<int, 3>& nodes = lattice.Nodes;
   vtkNew<vtkDoubleArray> coordinates;
   coordinates->SetNumberOfComponents(3);
-  coordinates->SetNumberOfTuples(slabLength * nodes[2]);
+  coordinates->SetNumberOfTuples(vtkIdType{ nodes[0] } * nodes[1] * nodes[2]);
   double* coordinate = coordinates->GetPointer(0);
 
-  const vtkIdType numberOfTetrahedra = static_cast<vtkIdType>(tetrahedronCount);
   vtkNew<vtkIdTypeArray> offsets;
   offsets->SetNumberOfValues(numberOfTetrahedra + 1);
   for (vtkIdType i = 0; i <= numberOfTetrahedra; ++i)
@@ -270,8 +293,6 @@ int vtkLatticeTetrahedraSource::RequestData(
   connectivity->SetNumberOfValues(4 * numberOfTetrahedra);
   vtkIdType* vertex = connectivity->GetPointer(0);
 
-  static const int table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-  const bool mirrored = volumeOfStep < 0.0;
   for (int z = 0; z < nodes[2]; ++z)
   {
     this->UpdateProgress(static_cast<double>(z) / nodes[2]);
@@ -287,32 +308,9 @@ int vtkLatticeTetrahedraSource::RequestData(
         *coordinate++ = node.x;
         *coordinate++ = node.y;
         *coordinate++ = node.z;
-      }
-    }
-    if (z + 1 == nodes[2])
-    {
-      break;
-    }
-    for (int y = 0; y + 1 < nodes[1]; ++y)
-    {
-      for (int x = 0; x + 1 < nodes[0]; ++x)
-      {
-        vtkIdType corners[8];
-        for (int v = 0; v < 8; ++v)
+        if (x + 1 < nodes[0] && y + 1 < nodes[1] && z + 1 < nodes[2])
         {
-          // Cells are mirrored on the axes on which their index is odd.
-          corners[v] = x + ((v ^ x) & 1) + rowLength * (y + (((v >> 2) ^ y) & 1)) +
-            slabLength * (z + (((v >> 1) ^ z) & 1));
-        }
-        // Corner tetrahedra are upright in cells of even parity, the central one in the others.
-        const bool cornersUpright = (((x + y + z) & 1) == 0) != mirrored;
-        for (int t = 0; t < 5; ++t)
-        {
-          const bool upright = (t < 4) == cornersUpright;
-          *vertex++ = corners[table[t][0]];
-          *vertex++ = corners[table[t][1]];
-          *vertex++ = corners[table[t][upright ? 2 : 3]];
-          *vertex++ = corners[table[t][upright ? 3 : 2]];
+          vertex = WriteCell(x, y, z, nodes, volumeOfCell < 0.0, vertex);
         }
       }
     }
@@ -324,7 +322,7 @@ int vtkLatticeTetrahedraSource::RequestData(
   cells->SetData(offsets, connectivity);
   output->SetPoints(points);
   output->SetCells(VTK_TETRA, cells);
-  std::copy_n(nodes, 3, this->Dimensions);
+  std::copy(nodes.begin(), nodes.end(), this->Dimensions);
   this->Incomplete = false;
   return 1;
 }

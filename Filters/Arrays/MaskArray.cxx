@@ -2,6 +2,7 @@
 #include "MaskArray.h"
 
 #include "Error.h"
+#include "ShapedArray.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArrayRange.h"
@@ -39,20 +40,11 @@ namespace
 DistanceValues FindDistances(vtkImageData* volume, const char* name)
 {
   DistanceValues distances;
-  vtkAbstractArray* array = volume->GetPointData()->GetAbstractArray(name);
-  if (!array)
+  vtkDataArray* numbers = FindShapedArray(
+    volume->GetPointData(), name, 1, volume->GetNumberOfPoints(), "point array", "the volume");
+  if (!numbers)
   {
     return distances;
-  }
-  auto* numbers = vtkDataArray::SafeDownCast(array);
-  const vtkIdType size = volume->GetNumberOfPoints();
-  if (!numbers || numbers->GetNumberOfComponents() != 1 || numbers->GetNumberOfTuples() != size)
-  {
-    throw Error(std::string("The point array \"") + name + "\" of the volume is " +
-      array->GetDataTypeAsString() + ", " + std::to_string(array->GetNumberOfTuples()) +
-      " tuples of " + std::to_string(array->GetNumberOfComponents()) +
-      " components. Give it a numeric type, one component and " + std::to_string(size) +
-      " tuples, one for each point.");
   }
   if (auto* floats = vtkArrayDownCast<vtkAOSDataArrayTemplate<float>>(numbers))
   {
@@ -60,7 +52,7 @@ DistanceValues FindDistances(vtkImageData* volume, const char* name)
     return distances;
   }
   const auto values = vtk::DataArrayValueRange<1>(numbers);
-  distances.Converted.resize(static_cast<std::size_t>(size));
+  distances.Converted.resize(static_cast<std::size_t>(values.size()));
   std::transform(values.begin(), values.end(), distances.Converted.begin(),
     [](double value) { return static_cast<float>(value); });
   distances.Values = distances.Converted.data();

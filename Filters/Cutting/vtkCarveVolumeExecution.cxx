@@ -5,6 +5,7 @@
 #include "Error.h"
 #include "InputUpdate.h"
 #include "PipelineGeometry.h"
+#include "ShapedArray.h"
 #include "WorldTool.h"
 
 #include "vtkBox.h"
@@ -150,13 +151,12 @@ vtkDataArray* vtkCarveVolume::vtkInternals::FindLabels(vtkImageData* volume) con
   {
     return nullptr;
   }
-  vtkDataArray* labels = volume->GetPointData()->GetArray(name.c_str());
-  if (!labels || labels->GetNumberOfComponents() != 1 ||
-    labels->GetNumberOfTuples() != volume->GetNumberOfPoints())
+  vtkDataArray* labels = deformvolume::FindShapedArray(volume->GetPointData(), name.c_str(), 1,
+    volume->GetNumberOfPoints(), "point array", "the volume");
+  if (!labels)
   {
     throw Error("The volume on input port 0 has no point array \"" + name +
-      "\" of numbers, one for each of its " + std::to_string(volume->GetNumberOfPoints()) +
-      " voxels. Set LabelArrayName to one, or to \"\" to carve no label.");
+      "\". Set LabelArrayName to an array of it, or to \"\" to carve no label.");
   }
   return labels;
 }

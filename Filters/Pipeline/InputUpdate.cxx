@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <string>
@@ -399,24 +400,68 @@ void MergeTimes(vtkAlgorithm* filter, int ports, vtkInformation* output)
   }
 }
 
+namespace
+{
+
+[[noreturn]] void ThrowOfTimes(const std::string& source, double time, double other)
+{
+  std::ostringstream text;
+  text
+    << "The source " << source << " was asked for the time " << time
+    << ", but another filter has asked it for the time " << other
+    << ". A source gives one time in each update. Use vtkForceTime (Force Time in ParaView) where "
+       "the time is fixed, or read the file a second time.";
+  throw Error(text.str());
+}
+
+std::optional<double> GetDataTime(vtkInformation* info)
+{
+  vtkDataObject* data = vtkDataObject::GetData(info);
+  return data && data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP())
+    ? std::make_optional(data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP()))
+    : std::nullopt;
+}
+
+} // namespace
+
 void CheckTimes(int ports, vtkInformationVector** input, vtkInformation* output)
 {
-  for (int port = 0; port < ports && output->Has(Pipeline::UPDATE_TIME_STEP()); ++port)
+  if (!output->Has(Pipeline::UPDATE_TIME_STEP()))
   {
-    const double time = output->Get(Pipeline::UPDATE_TIME_STEP());
+    return;
+  }
+  const double time = output->Get(Pipeline::UPDATE_TIME_STEP());
+  std::map<int, double> wrong; // times of data, by the port
+  std::set<double> fixed;
+  for (int port = 0; port < ports; ++port)
+  {
     vtkInformation* info = input[port]->GetInformationObject(0);
-    // Requests are compared, not the times of the data, because a source may choose its nearest
-    // time step. A source without times gives the same data for all requests.
-    if (info && info->Has(Pipeline::UPDATE_TIME_STEP()) && !GetTimes(info).empty() &&
-      info->Get(Pipeline::UPDATE_TIME_STEP()) != time)
+    const std::vector<double> times = info ? GetTimes(info) : std::vector<double>();
+    // A source without times gives the same data for all requests.
+    if (times.empty())
     {
-      std::ostringstream text;
-      text << "The source on input port " << port << " was asked for the time " << time
-           << ", but another filter has asked it for the time "
-           << info->Get(Pipeline::UPDATE_TIME_STEP())
-           << ". A source gives one time in each update. Use vtkForceTime (Force Time in ParaView) "
-              "where the time is fixed, or read the file a second time.";
-      throw Error(text.str());
+      continue;
+    }
+    if (info->Has(Pipeline::UPDATE_TIME_STEP()) && info->Get(Pipeline::UPDATE_TIME_STEP()) != time)
+    {
+      ThrowOfTimes(
+        "on input port " + std::to_string(port), time, info->Get(Pipeline::UPDATE_TIME_STEP()));
+    }
+    const std::optional<double> found = GetDataTime(info);
+    const bool isOffered = std::find(times.begin(), times.end(), time) != times.end();
+    if (found && *found != time)
+    {
+      isOffered ? void(wrong.emplace(port, *found)) : void(fixed.insert(*found));
+    }
+  }
+  // If filters lie between the source and the port, only the data show which time the source gave.
+  // Some sources store other times in their data than they announce. Thus the data of a port are
+  // wrong only if they have the time that another port chooses.
+  for (const auto& [port, found] : wrong)
+  {
+    if (fixed.count(found) > 0)
+    {
+      ThrowOfTimes("upstream of input port " + std::to_string(port), time, found);
     }
   }
 }

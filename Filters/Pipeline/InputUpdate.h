@@ -81,8 +81,8 @@ std::vector<double> GetTimes(vtkInformation* input);
 /// Sets the time steps and the time range of the output to the union of those of the first ports.
 void MergeTimes(vtkAlgorithm* filter, int ports, vtkInformation* output);
 
-/// Throws an Error if the source of one of the first ports has been asked for another time than the
-/// output: the source is also upstream of another input, which needs that time.
+/// Throws an Error if a source upstream of one of the first ports gave another time than that of
+/// the output: the source is also upstream of another input, which needs that time.
 void CheckTimes(int ports, vtkInformationVector** input, vtkInformation* output);
 
 /// Sets the time step of the output data to the requested one, or else to that of the first input

@@ -24,10 +24,10 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkCommonExecutionModel import vtkAlgorithm, vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
 
-from . import _deformer, _native
+from . import _deformer, _native, _structs
 
-_OUTSIDE = ("discard", "extrapolate", "keep")
-_INTERPOLATION = ("linear", "cubic", "nearest")
+_OUTSIDE = tuple(_structs.OUTSIDE)
+_INTERPOLATION = tuple(_structs.INTERPOLATION)
 _BOUNDS = ("deformed", "volume")
 _ALL_TETRAHEDRA = 31
 _HIDDEN_BY_EDIT = 128  # of vtkVolumeEditAlgorithm::BlankCells
@@ -243,9 +243,9 @@ class DeformVolume(VTKPythonAlgorithmBase):
         if not isinstance(value, accepted):
             raise TypeError(f"{name} is {value!r}. Give {wanted}.")
         value = type(before)(value)
-        largest = {"OutsideMode": 2, "Interpolation": 2, "OutputBoundsMode": 1}
-        if name in largest:
-            value = min(max(value, 0), largest[name])
+        choices = {"OutsideMode": _OUTSIDE, "Interpolation": _INTERPOLATION, "OutputBoundsMode": _BOUNDS}
+        if name in choices:
+            value = min(max(value, 0), len(choices[name]) - 1)
         if value != before:
             self._settings[name] = value
             if name == "Device":
