@@ -35,9 +35,13 @@ struct WorldField
   /// Distance from the field, in cells, up to which a point counts as inside. Default: 0.
   double Tolerance = 0.0;
 
-  /// Returns the vector of a point, multiplied by Scale, in world units.
+  /// Returns the vector of a point, multiplied by Scale, in world units; 0 if it is undefined.
   glm::dvec3 GetVector(std::int64_t point) const
   {
+    if (this->Undefined && this->Undefined[point])
+    {
+      return glm::dvec3(0.0);
+    }
     const std::int64_t first = 3 * point;
     return this->Scale *
       (this->Floats

@@ -714,14 +714,15 @@ TEST(DeformGeometryFilter, Field)
   field->GetPointData()->AddArray(ghosts);
   field->GetPointData()->GetVectors()->SetComponent(
     3 + 8 * (4 + 8 * 5), 0, std::numeric_limits<double>::quiet_NaN());
-  subject.Filter->SetInputData(
-    MakePoints({ cell * glm::dvec3(3.5, 4.0, 5.0), cell * glm::dvec3(4.0, 4.0, 5.0),
-      cell * glm::dvec3(3.5, 5.0, 5.0), cell * glm::dvec3(4.1, 4.2, 5.1) }));
+  subject.Filter->SetInputData(MakePoints({ cell * glm::dvec3(3.5, 4.0, 5.0),
+    cell * glm::dvec3(4.0, 4.0, 5.0), cell * glm::dvec3(3.5, 5.0, 5.0),
+    cell * glm::dvec3(4.1, 4.2, 5.1), cell * glm::dvec3(4.0 - 1e-6, 4.0, 5.0) }));
   subject.Update();
   EXPECT_FALSE(subject.IsValid(0));
   EXPECT_TRUE(subject.IsValid(1));
   EXPECT_TRUE(subject.IsValid(2));
   EXPECT_TRUE(subject.IsValid(3));
+  EXPECT_TRUE(subject.IsValid(4));
 
   // An oblique field of doubles, with an extent that does not begin at 0.
   auto oblique = MakeImage({ { 2, 6, -3, 4, 5, 9 } }, { 1.5, 0.7, 2.0 }, { 3.0, 4.0, -5.0 });
