@@ -124,6 +124,43 @@ TEST(ElementTypes, NearLargeIntegersOf64BitsAreRoundedToNearest)
   }
 }
 
+// Values are equal within each plane and far apart between planes, and voxels move within their
+// planes. So each output voxel has the value of its plane, which may be an end of the type.
+TEST(ElementTypes, FarIntegersOf64BitsDoNotMix)
+{
+  SKIP_WITHOUT_DOUBLE_PRECISION()
+  const DeformerCase within = MakeCase({ { 0, 12, 0, 11, 0, 6 } }, { { 1, 1, 1 } },
+    [jitter = MakeJitter(3, 0.2)](const glm::dvec3& index)
+    { return index + jitter(index) * glm::dvec3(1.0, 1.0, 0.0); });
+  AllTypes types(within.GetNumberOfVoxels(), 0.0, false);
+  const auto largest = std::numeric_limits<std::int64_t>::max();
+  const std::int64_t signedValues[2] = { largest, largest / 2 + 12345 };
+  const std::uint64_t unsignedValues[2] = { 0, 1760000000123456789 };
+  const auto isOdd = [](std::size_t voxel) { return voxel / (13 * 12) % 2; };
+  for (std::size_t voxel = 0; voxel < types.OneInt64.size(); ++voxel)
+  {
+    types.OneInt64[voxel] = signedValues[isOdd(voxel)];
+    types.OneUInt64[voxel] = unsignedValues[isOdd(voxel)];
+  }
+  const Deformed deformed = LoadAndRun(within, types.Arrays);
+  const auto* const signedOutput = deformed.GetOutput<std::int64_t>(types.Find<std::int64_t>());
+  const auto* const unsignedOutput = deformed.GetOutput<std::uint64_t>(types.Find<std::uint64_t>());
+  const Extent& output = within.Output;
+  const auto plane = static_cast<std::size_t>(GetSize(output, 0) * GetSize(output, 1));
+  int covered = 0;
+  for (std::size_t voxel = 0; voxel < deformed.Coverage.size(); ++voxel)
+  {
+    if (deformed.Coverage[voxel] != 0)
+    {
+      const int z = output[4] + static_cast<int>(voxel / plane);
+      ASSERT_EQ(signedOutput[voxel], signedValues[z % 2]);
+      ASSERT_EQ(unsignedOutput[voxel], unsignedValues[z % 2]);
+      ++covered;
+    }
+  }
+  EXPECT_GT(covered, 700);
+}
+
 TEST(ElementTypes, IntegersAreRoundedToNearestEvenAndStayInRange)
 {
   SKIP_WITHOUT_DOUBLE_PRECISION()
