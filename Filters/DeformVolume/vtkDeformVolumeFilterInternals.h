@@ -13,6 +13,7 @@
 #include "vtkDeformVolumeFilter.h"
 #include "vtkInformation.h"
 #include "vtkSmartPointer.h"
+#include "vtkTimeStamp.h"
 
 #include <exception>
 #include <functional>
@@ -269,8 +270,7 @@ private:
   deformvolume::ImageGeometry VolumeAtRest;
 
   deformvolume::InputGeometry ReferenceGeometry;
-  // The last image in memory, and its own modification time.
-  std::pair<const void*, vtkMTimeType> ImageInMemory;
+  vtkTimeStamp ImageRead; // when the volume was read last
   // The volume that CutToWhole() has cropped, and the stamp of the volume that it was cropped from.
   vtkSmartPointer<vtkImageData> CutVolume;
   std::pair<const void*, vtkMTimeType> CutStamp;

@@ -83,18 +83,16 @@ deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
 void vtkDeformVolumeFilter::vtkInternals::FollowImage()
 {
   const std::pair<const void*, vtkMTimeType> now = deformvolume::GetWrittenStamp(this->Self, 0);
-  if (!now.first)
-  {
-    return;
-  }
-  if (this->ImageInMemory.first == now.first && this->ImageInMemory.second != now.second)
+  // An image that was modified may share arrays with the last image, and its owner may have written
+  // to them.
+  if (now.first && now.second > this->ImageRead.GetMTime())
   {
     for (auto& state : this->States)
     {
       state.second.ForgetValues();
     }
   }
-  this->ImageInMemory = now;
+  this->ImageRead.Modified();
 }
 
 //------------------------------------------------------------------------------

@@ -70,7 +70,7 @@ Stamp GetCellArraysStamp(const MeshParts& parts)
 
 void MeshStamp::Add(vtkUnstructuredGrid* grid, bool made)
 {
-  this->Grids.push_back({ grid, made ? 0 : grid->vtkObject::GetMTime() });
+  this->Times.push_back(made ? 0 : grid->vtkObject::GetMTime());
 }
 
 MeshStamp MeshStamp::OfCells(const MeshParts& parts, bool made)
@@ -99,10 +99,7 @@ MeshStamp MeshStamp::OfPoints(const MeshParts& parts, bool made)
 
 bool MeshStamp::IsThatOf(const MeshStamp& last) const
 {
-  return this->Arrays == last.Arrays && !this->Grids.empty() &&
-    std::equal(this->Grids.begin(), this->Grids.end(), last.Grids.begin(), last.Grids.end(),
-      [](const Grid& now, const Grid& before)
-      { return now.Object != before.Object || now.Modified == before.Modified; });
+  return this->Arrays == last.Arrays && this->Times == last.Times && !this->Times.empty();
 }
 
 } // namespace deformvolume

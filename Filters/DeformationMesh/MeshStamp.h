@@ -27,9 +27,9 @@ Stamp GetCellFormStamp(vtkUnstructuredGrid* grid);
 Stamp GetCellArraysStamp(const MeshParts& parts);
 
 /// Identifies the cells or the points of a mesh without reading them: by their arrays, with
-/// modification times and sizes. Another grid with the same arrays has the same cells: filters that
-/// pass their input on make such grids. If a grid that no filter has made is modified, its owner
-/// may have written to its arrays, and the stamps differ.
+/// modification times and sizes. Of filters, another grid with the same arrays has the same cells:
+/// filters that pass their input on make such grids. If a grid that no filter has made is modified,
+/// or is new, its owner may have written to its arrays, and the stamps differ.
 class MeshStamp
 {
 public:
@@ -44,16 +44,10 @@ public:
   bool HasArraysOf(const MeshStamp& other) const { return this->Arrays == other.Arrays; }
 
 private:
-  struct Grid
-  {
-    const void* Object;
-    vtkMTimeType Modified; // 0: not compared
-  };
-
   void Add(vtkUnstructuredGrid* grid, bool made);
 
   Stamp Arrays;
-  std::vector<Grid> Grids;
+  std::vector<vtkMTimeType> Times; // of the grids; 0: not compared
 };
 
 } // namespace deformvolume

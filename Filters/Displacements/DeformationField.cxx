@@ -62,7 +62,10 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   }
   const ImageGeometry geometry = GetGeometry(image);
   vtkDataArray* array = FindFieldVectors(image, source);
+  std::vector<unsigned char> undefined = FindHiddenPoints(image);
+  this->VectorsStamp.clear(); // if a call below throws, the vectors are those of another grid
   const auto lastDimensions = this->FieldDimensions;
+  const auto lastSpacing = this->FieldSpacing;
   const auto lastIndexToField = this->IndexToField;
   image->GetDimensions(this->FieldDimensions.data());
   this->FieldSpacing = glm::abs(geometry.Spacing);
@@ -71,7 +74,6 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   const int step = source.FieldIsInverse
     ? 1
     : GetStep(source.Volume.PointExtent, this->IndexToField, this->FieldDimensions);
-  std::vector<unsigned char> undefined = FindHiddenPoints(image);
   vtkSmartPointer<vtkDataArray> taken;
   if (step > 1)
   {
@@ -99,7 +101,7 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
     }
   }
   if (undefined != this->UndefinedPoints || lastDimensions != this->FieldDimensions ||
-    lastIndexToField != this->IndexToField)
+    lastSpacing != this->FieldSpacing || lastIndexToField != this->IndexToField)
   {
     ++this->UndefinedVersion;
   }

@@ -2,8 +2,10 @@
 // Displacement fields that are undefined at hidden points. Voxels that need such a point are not
 // covered, as if they were blanked. All other voxels are equal to those of a field without hidden
 // points.
+#include "ArrayMaking.h"
 #include "FilterTesting.h"
 
+#include <vtkImageChangeInformation.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <glm/common.hpp>
@@ -147,6 +149,62 @@ TEST(UndefinedVectors, Edits)
   field->GetPointData()->GetVectors()->SetComponent(16000, 1, nan);
   field->GetPointData()->GetVectors()->Modified();
   tested.VerifyFailure("Vector 16000 of the displacement field");
+}
+
+// A field with an unusable mask is an error. The next update with the first field is right.
+TEST(UndefinedVectors, FieldsAfterFailures)
+{
+  const auto volume = MakeVolume({ { 0, 12, 0, 12, 0, 12 } });
+  const auto field = MakeImage({ { 0, 5, 0, 5, 0, 5 } }, glm::dvec3(2.0));
+  SetDisplacements(field, Bend());
+  const auto larger = MakeImage({ { 0, 12, 0, 12, 0, 12 } }, glm::dvec3(0.7));
+  SetDisplacements(larger, Bend());
+  larger->GetPointData()->AddArray(
+    MakeArray<vtkFloatArray>(vtkDataSetAttributes::GhostArrayName(), larger->GetNumberOfPoints()));
+  Deformed tested(volume, field);
+  tested.Update();
+  tested.Filter->SetDeformationData(larger);
+  tested.VerifyFailure("\"vtkGhostType\"");
+  tested.Filter->SetDeformationData(field);
+  Deformed expected(volume, field);
+  for (Deformed* one : { &tested, &expected })
+  {
+    one->Filter->SetOutsideModeToExtrapolate();
+    one->Filter->GenerateJacobianOn();
+  }
+  EXPECT_TRUE(AreEqual(tested.Update(), expected.Update()));
+}
+
+// Volume and field in another unit, with the same memory of vectors. Which voxels are undefined
+// depends on FadeDistance.
+TEST(UndefinedVectors, OtherUnit)
+{
+  const auto volume = MakeVolume({ { 0, 15, 0, 9, 0, 9 } });
+  const auto field = MakeImage({ { 0, 4, 0, 4, 0, 4 } }, glm::dvec3(2.0));
+  SetDisplacements(field, Shift(0.3, 0.3, 0.3));
+  Hide(field, [](const glm::dvec3& p) { return p == glm::dvec3(8.0, 4.0, 4.0); });
+  vtkNew<vtkImageChangeInformation> volumeUnit;
+  volumeUnit->SetInputData(volume);
+  vtkNew<vtkImageChangeInformation> fieldUnit;
+  fieldUnit->SetInputData(field);
+  const auto prepare = [&](Deformed& deformed)
+  {
+    deformed.Filter->SetInputConnection(volumeUnit->GetOutputPort());
+    deformed.Filter->SetDeformationConnection(fieldUnit->GetOutputPort());
+    deformed.Filter->SetOutsideModeToKeep();
+    deformed.Filter->SetFadeDistance(4.0);
+    deformed.Filter->SetOutputBoundsModeToVolumeBounds();
+  };
+  Deformed tested;
+  prepare(tested);
+  for (const double scale : { 1.0, 2.0, 0.5 })
+  {
+    volumeUnit->SetOutputSpacing(scale, scale, scale);
+    fieldUnit->SetOutputSpacing(2.0 * scale, 2.0 * scale, 2.0 * scale);
+    Deformed expected;
+    prepare(expected);
+    EXPECT_TRUE(AreEqual(tested.Update(), expected.Update())) << scale;
+  }
 }
 
 // With an inverse field each output voxel has the value of its rest position, or is not covered.

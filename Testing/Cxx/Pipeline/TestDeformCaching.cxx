@@ -222,6 +222,45 @@ TEST(DeformCaching, ChangesOfForm)
   EXPECT_TRUE(HasPart(limited.LastError, "bytes are needed"));
 }
 
+// A program writes values and points, and passes them in a new data object.
+TEST(DeformCaching, ArraysInNewObjects)
+{
+  const auto volume = MakeVolume({ { 0, 20, 0, 19, 0, 18 } });
+  const auto mesh = MakeTetrahedra({ { 2.0, 12.0, 3.0, 13.0, 4.0, 14.0 } }, { { 3, 3, 3 } });
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
+  Deformed tested(volume, mesh);
+  tested.Filter->SetOutputBoundsModeToVolumeBounds();
+  tested.Update();
+  // SetComponent() does not change the modification time.
+  vtkDataArray* const values = volume->GetPointData()->GetScalars();
+  vtkDataArray* const coordinates = mesh->GetPoints()->GetData();
+  for (int step = 0; step < 3; ++step)
+  {
+    for (vtkIdType i = step; i < values->GetNumberOfTuples(); i += 3)
+    {
+      values->SetComponent(i, 0, 7.0);
+    }
+    vtkNew<vtkImageData> sameVolume;
+    sameVolume->ShallowCopy(volume);
+    for (vtkIdType i = 0; i < coordinates->GetNumberOfTuples(); ++i)
+    {
+      coordinates->SetComponent(i, 0, coordinates->GetComponent(i, 0) + 1.0);
+    }
+    vtkNew<vtkUnstructuredGrid> sameMesh;
+    sameMesh->ShallowCopy(mesh);
+    // In the last step, the first objects are used again.
+    vtkImageData* const image = step < 2 ? sameVolume.Get() : volume.Get();
+    vtkUnstructuredGrid* const grid = step < 2 ? sameMesh.Get() : mesh.Get();
+    image->Modified();
+    grid->Modified();
+    tested.Filter->SetInputData(image);
+    tested.Filter->SetDeformationData(grid);
+    Deformed expected(image, grid);
+    expected.Filter->SetOutputBoundsModeToVolumeBounds();
+    EXPECT_TRUE(AreEqual(tested.Update(), expected.Update())) << step;
+  }
+}
+
 // On a CPU device OutputOnDevice has no effect: the output has ordinary arrays.
 TEST(DeformCaching, OutputOnDevice)
 {
