@@ -179,7 +179,8 @@ BrickPoints BrickPoints::FromRuns(const BrickGrid& grid, const Runs& runs, const
             }
             add(runs.Owners[run->Tetrahedron]);
             // Weights are affine along a run, so the extremes are at its ends.
-            const double* record = runs.Rest + 15 * static_cast<std::size_t>(run->Tetrahedron);
+            const double* record =
+              runs.Rest + DEFORMVOLUME_REST_NUMBERS * static_cast<std::size_t>(run->Tetrahedron);
             for (const int x : { first, last })
             {
               const double offset[3] = { x - record[0], double(y) - record[1],

@@ -2,8 +2,8 @@
 // Evaluates the records of tetrahedra that RunMapping.cl reads.
 //
 // Data:
-//   rest        15 reals per record: origin, weights of the first three nodes at the origin, and gradients of these
-//               weights per voxel
+//   rest        DEFORMVOLUME_REST_NUMBERS reals per record: origin, weights of the first three nodes at the origin, and
+//               gradients of these weights per voxel
 //   owners      tetrahedron of each record
 //   tetrahedra  nodes of the tetrahedra, times DEFORMVOLUME_NODE_STRIDE
 //
@@ -23,7 +23,7 @@ __kernel void EvaluateTetrahedra(__global const REAL* restrict rest,
   {
     return;
   }
-  __global const REAL* origin = rest + 15 * id;
+  __global const REAL* origin = rest + DEFORMVOLUME_REST_NUMBERS * id;
   __global const REAL* weights = origin + 3;
   __global const REAL* gradients = origin + 6;
   const int4 t = tetrahedra[owners[id]];

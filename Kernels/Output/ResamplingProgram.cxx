@@ -24,6 +24,7 @@ std::size_t GetBrickMemory(const OpenCLContext& context, bool hasTurnedAxes, std
   const std::size_t lanes = static_cast<std::size_t>(GetLanes(context));
   const std::size_t halfRow = (DEFORMVOLUME_BRICK_X / 2 / lanes + 1) * lanes;
   const std::size_t row = 2 * (3 + slots) * halfRow;
+  // The sum BRICK_FLOATS of BrickResampling.cl; change both.
   return ((hasTurnedAxes ? 12 : 4) * halfRow + 3 * (DEFORMVOLUME_BRICK_X + 16) +
            2 * (DEFORMVOLUME_BRICK_Y + 1) * row) *
     sizeof(cl_float);

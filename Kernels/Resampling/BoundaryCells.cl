@@ -51,7 +51,8 @@ static ulong KeyOf(const RestLocation* location, int isInverted)
     (ulong)location->Cell[0] << 3 | (ulong)location->Tetrahedron;
 }
 
-// Returns a rest coordinate relative to a cell, from 0 to one, mirrored according to the parity of the cell.
+// Returns a rest coordinate relative to a cell, from 0 to `1 << REST_BITS` on each axis, mirrored according to the
+// parity of the cell.
 static Vector InCell(const long* rest, const int* cell, const KernelParameters* p)
 {
   long point[3];
@@ -291,7 +292,7 @@ __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const i
     uint open[ROWS_AT_ONCE]; // voxels that are not covered by cells
     uint taken[ROWS_AT_ONCE];
     ulong keys[ROWS_AT_ONCE][32];
-    uint any = 0;
+    uint anyOpen = 0;
     for (int i = 0; i < ROWS_AT_ONCE; ++i)
     {
       int voxel[3];
@@ -308,9 +309,9 @@ __kernel void ResampleBoundary(__global const int4* tetrahedra, __global const i
         }
         open[i] <<= box.Low.x - origin[0];
       }
-      any |= open[i];
+      anyOpen |= open[i];
     }
-    for (uint i = any ? listBegin : listEnd; i < listEnd; ++i)
+    for (uint i = anyOpen ? listBegin : listEnd; i < listEnd; ++i)
     {
       const int4 corners = tetrahedra[lists[i]];
       const int4 a = positions[corners.x];

@@ -16,9 +16,11 @@ typedef struct
 #endif
 } RowFlags;
 
-#define SOURCES 0x0101010101010101UL
-#define INTERIORS 0x0202020202020202UL
-#define TOGETHER 0x4040404040404040UL
+// A bit of the states of eight vertices, which are eight bytes.
+#define OF_EIGHT(bit) ((bit) * 0x0101010101010101UL)
+#define SOURCES OF_EIGHT(DEFORMVOLUME_VERTEX_SOURCE)
+#define INTERIORS OF_EIGHT(DEFORMVOLUME_VERTEX_INTERIOR)
+#define TOGETHER OF_EIGHT(DEFORMVOLUME_VERTEX_TOGETHER)
 
 // Returns the states of sixteen vertices of a row as eight bytes. Byte k has the bits that vertices k and k + 8 have in
 // common. rowInside: whether the row is not at the border of the volume.
@@ -34,7 +36,7 @@ static ulong StatesOf(
 }
 
 #define STORE_EIGHT(v, slot) *(ROW_MEMORY UnalignedFloat8*)(slot) = v;
-#define FLAGS_TOGETHER 7u // the RowFlags bits that sixteen vertices can belong to
+#define FLAGS_OF_SIXTEEN 7u // the RowFlags bits that sixteen vertices can belong to
 
 #define PUT_VALUE(index, TYPE, BITS, SLOT)                                                         \
   {                                                                                                \
@@ -45,7 +47,7 @@ static ulong StatesOf(
       flags->Special |= 1u << (i >> 3);                                                            \
     }                                                                                              \
   }
-#define PUT_VALUES_TOGETHER(index, TYPE, BITS, SLOT)                                               \
+#define PUT_SIXTEEN_VALUES(index, TYPE, BITS, SLOT)                                                \
   {                                                                                                \
     const float16 value = convert_float16(vload16(0, source##index + row->Chunk + x));             \
     STORE_EIGHT(value.even, slot + (3 + SLOT) * HALF_ROW)                                         \
@@ -54,7 +56,7 @@ static ulong StatesOf(
     {                                                                                              \
       if (any(IS_SPECIAL(as_int16(value))))                                                        \
       {                                                                                            \
-        flags->Special |= FLAGS_TOGETHER << (i >> 3);                                              \
+        flags->Special |= FLAGS_OF_SIXTEEN << (i >> 3);                                            \
       }                                                                                            \
     }                                                                                              \
   }
@@ -168,15 +170,15 @@ static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int 
 #endif
   if ((states & INTERIORS) != INTERIORS)
   {
-    flags->Border |= FLAGS_TOGETHER << (i >> 3);
+    flags->Border |= FLAGS_OF_SIXTEEN << (i >> 3);
   }
 #if HAS_CUT
   if ((states & TOGETHER) != TOGETHER)
   {
-    flags->Apart |= FLAGS_TOGETHER << (i >> 3);
+    flags->Apart |= FLAGS_OF_SIXTEEN << (i >> 3);
   }
 #endif
-  LANE_ARRAYS(PUT_VALUES_TOGETHER)
+  LANE_ARRAYS(PUT_SIXTEEN_VALUES)
 }
 
 // Returns how many vertices must be mapped again so that the last sixteen vertices end at `end`. The first of these

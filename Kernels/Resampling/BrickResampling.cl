@@ -228,7 +228,7 @@ static void ResampleLayer(const SamplingMesh* mesh, const BrickCells* cells, int
     row.X = cells->X;
     row.Y = y;
     row.Z = z;
-    row.Odd = (p->First[1] + y + p->First[2] + z + p->IsMirrored) & 1;
+    row.Parity = (p->First[1] + y + p->First[2] + z + p->IsMirrored) & 1;
     row.Borders = f[0]->Border | f[1]->Border | f[2]->Border | f[3]->Border;
 #if HAS_CUT
     row.Apart = f[0]->Apart | f[1]->Apart | f[2]->Apart | f[3]->Apart;
@@ -283,10 +283,11 @@ static void ResampleBrick(const SamplingMesh* mesh, uint item, int isAbove, cons
   }
 }
 
+// As GetBrickMemory (ResamplingProgram.cxx); change both.
 #define BRICK_FLOATS (2 * REST_ODD + 3 * ROW_SLOTS + 2 * ROWS * ROW)
 
 // Resamples the bricks of a list from p.ListBegin to p.ListEnd. taken: the number of bricks that work-items have
-// taken so far; initially 0. rows: BRICK_FLOATS floats (GetBrickMemory); in global memory, for each work-item.
+// taken so far; initially 0. rows: BRICK_FLOATS floats; in global memory, for each work-item.
 //
 // Each work-item takes a few bricks at a time (p.Portion). If drivers distributed the bricks, a thread would get many
 // at once, and a thread that was interrupted, or that has more work, would delay the end of the launch.

@@ -3,13 +3,13 @@
 //
 // Coverage is closed: a voxel is covered if its center lies in an active tetrahedron or on its surface. If the center
 // lies on a face, edge or vertex that several tetrahedra share, exactly one of them writes the voxel:
-// - inside the mesh, the one that holds the center after a shift by (e, e^2, e^3) for an infinitesimal e > 0
+// - inside the sampling mesh, the one that holds the center after a shift by (e, e^2, e^3) for an infinitesimal e > 0
 //   (the top-left rule of triangle rasterization in three dimensions);
 // - at the border of the volume, if all cells exist there, the first tetrahedron with the simplex in this cell: on
 //   each axis the simplex touches the low side of the cell in the voxel grid, or the cell is the last one;
-// - elsewhere at the border of the mesh, where any cell may be missing, the one that holds the center after the first
-//   possible shift (+-e, +-e^2, +-e^3), with signs in the order +++, -++, +-+, --+, ++-, ...; if no shift leads into
-//   the mesh, the last one in the order of cells and tetrahedra.
+// - elsewhere at the border of the sampling mesh, where any cell may be missing, the one that holds the center after
+//   the first possible shift (+-e, +-e^2, +-e^3), with signs in the order +++, -++, +-+, --+, ++-, ...; if no shift
+//   leads into the mesh, the last one in the order of cells and tetrahedra.
 // Which of the three rules applies depends only on the simplex whose interior contains the center. So all tetrahedra
 // around it decide consistently.
 //
@@ -101,9 +101,9 @@ static int FirstShiftInside(const EdgeFunctions* f, int tetrahedron, int simplex
   return 8;
 }
 
-// Whether this tetrahedron owns a simplex by the rule for the border of the mesh: of all tetrahedra that share the
-// simplex, none comes before it. simplex: a mask of vertices of the cell. own: the first shift into this tetrahedron.
-// side: the side of a smooth cut whose copies are considered.
+// Whether this tetrahedron owns a simplex by the rule for the border of the sampling mesh: of all tetrahedra that share
+// the simplex, none comes before it. simplex: a mask of vertices of the cell. own: the first shift into this
+// tetrahedron. side: the side of a smooth cut whose copies are considered.
 static OUTLINED int IsOwnerOnBorder(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron,
   int simplex, int own, int side, const KernelParameters* p)
 {

@@ -3,8 +3,8 @@
 
 __constant uchar CornerBehindFace[4] = DEFORMVOLUME_CORNER_BEHIND_FACE;
 
-// A cache of the positions of the vertices of a cell and of the surrounding cells: at the border of the mesh each
-// position is needed many times.
+// A cache of the positions of the vertices of a cell and of the surrounding cells: at the border of the sampling
+// mesh each position is needed many times.
 typedef struct
 {
   int First[3]; // local index of the first vertex

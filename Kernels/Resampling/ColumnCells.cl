@@ -260,7 +260,7 @@ static __attribute__((always_inline)) void MakeCellPacket(LocalRow row, int oddY
   cell->X = x;
   cell->Y = y;
   cell->Z = z;
-  cell->Odd = IsTurned(x, y, z, p);
+  cell->Parity = IsTurned(x, y, z, p);
   cell->Border = (flags & FLAG_BORDER) != 0;
   cell->Apart = (flags & FLAG_APART) != 0;
 }

@@ -9,8 +9,8 @@
 //
 // Work that few cells need would take registers from all others and keep most of a group waiting. So cells are
 // deferred if floats do not decide one of their samples, if they have very many samples, or if they are aligned cells
-// at the border of the mesh. ResampleDeferredInt32 handles these. Cells that are bent or large, that a cut divides,
-// or that may lack tetrahedra are deferred to ResampleDeferredInt64 (DeferredResampling.cl), as are cells that
+// at the border of the sampling mesh. ResampleDeferredInt32 handles these. Cells that are bent or large, that a cut
+// divides, or that may lack tetrahedra are deferred to ResampleDeferredInt64 (DeferredResampling.cl), as are cells that
 // ResampleDeferredInt32 cannot finish.
 //
 // The work-group does not handle undecided samples itself after each layer: about eight of 256 cells have one, and

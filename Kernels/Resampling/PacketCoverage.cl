@@ -4,7 +4,7 @@
 
 #define MAXIMUM_EXACT_EXTENT 3.99f // voxels: edge functions of larger cells need more than 32 bits
 
-// The surroundings of the cells of a packet at the border of the mesh.
+// The surroundings of the cells of a packet at the border of the sampling mesh.
 typedef struct
 {
   INTS Whole;    // whether all five tetrahedra are active and have positions
@@ -294,7 +294,7 @@ static __attribute__((always_inline)) uint DecideByIntegers(const Packet* packet
   Output* output, const KernelParameters* p)
 {
   INTS simplex;
-  INTS held = HoldSample(packet, sample, packet->Odd, inverted, &simplex);
+  INTS held = HoldSample(packet, sample, packet->Parity, inverted, &simplex);
   if (packet->Border)
   {
     // The same rule as RoleOf.
@@ -319,9 +319,9 @@ static __attribute__((always_inline)) uint DecideByIntegers(const Packet* packet
   return undecidedByFloats & LaneBits(held);
 }
 
-// Whether a cell owns a sample on one of its vertices at the border of the mesh. The cell must be aligned, with all
-// of its tetrahedra and coordinates that grow with the indices. Of its tetrahedra at the vertex, the candidate is the
-// one at the edge along x, into which a shift away from the vertex leads.
+// Whether a cell owns a sample on one of its vertices at the border of the sampling mesh. The cell must be aligned,
+// with all of its tetrahedra and coordinates that grow with the indices. Of its tetrahedra at the vertex, the candidate
+// is the one at the edge along x, into which a shift away from the vertex leads.
 static SELDOM int OwnsVertex(
   const SamplingMesh* mesh, int x, int y, int z, int vertex, const KernelParameters* p)
 {

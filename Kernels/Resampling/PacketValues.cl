@@ -58,7 +58,7 @@ static SELDOM void StoreOtherArrays(
 #pragma unroll
   for (int v = 0; v < 8; ++v)
   {
-    LocalRow vertex = PLACE_OF(packet, v) + lane;
+    LocalRow vertex = SLOTS_OF(packet, v) + lane;
     x[v] = (EXACT)((vertex[0] - sample[0]) * 256.0f);
     y[v] = (EXACT)((vertex[HALF_ROW] - sample[1]) * 256.0f);
     z[v] = (EXACT)((vertex[2 * HALF_ROW] - sample[2]) * 256.0f);

@@ -32,21 +32,21 @@ typedef ROW_MEMORY const float* LocalRow;
 #if LANES > 1
 // A row of cells between two rows of vertices in each of two planes. Rows: slots of the vertices of even x; bit 0 of
 // the index: odd z, bit 1: odd y, as vertices of a cell are numbered by the parity of their structured indices
-// (CellCoverage.cl). Odd: the parity of y + z.
+// (CellCoverage.cl). Parity: of y + z.
 typedef struct
 {
   LocalRow Rows[4];
   int X; // index of the brick's first cell
   int Y;
   int Z;
-  int Odd;
+  int Parity;
   uint Borders; // flags as in RowFlags
   uint Apart;
 } RowOfCells;
 #endif
 
-// Every second cell of a row, from X on. Side: 1 if the vertices of even x come after those of odd x. Odd: the parity
-// of x + y + z. Border: whether a vertex may not be interior. Apart: whether a vertex may have different positions
+// Every second cell of a row, from X on. Side: 1 if the vertices of even x come after those of odd x. Parity: of
+// x + y + z. Border: whether a vertex may not be interior. Apart: whether a vertex may have different positions
 // for the two sides of a smooth cut.
 typedef struct
 {
@@ -61,7 +61,7 @@ typedef struct
   int X;
   int Y;
   int Z;
-  int Odd;
+  int Parity;
   int Border;
   int Apart;
 } Packet;
@@ -77,7 +77,7 @@ static __attribute__((always_inline)) void MakePacket(
   const RowOfCells* row, int k, int side, Packet* packet)
 {
   const Packet made = { { row->Rows[0] + k, row->Rows[1] + k, row->Rows[2] + k, row->Rows[3] + k },
-    side, row->X + 2 * k + side, row->Y, row->Z, row->Odd ^ side,
+    side, row->X + 2 * k + side, row->Y, row->Z, row->Parity ^ side,
     (row->Borders & PACKET_FLAGS(k)) != 0, (row->Apart & PACKET_FLAGS(k)) != 0 };
   *packet = made;
 }
@@ -90,9 +90,9 @@ static __attribute__((always_inline)) void MakePacket(
 #define ROW_OF(packet, v)                                                                           \
   ((packet)->Row + ((v) >> 1 & 1) * (packet)->OddZ + ((v) >> 2) * (packet)->OddY)
 #endif
-#define PLACE_OF(packet, v) (ROW_OF(packet, v) + ((v)&1 ? ODD : (packet)->Side))
+#define SLOTS_OF(packet, v) (ROW_OF(packet, v) + ((v)&1 ? ODD : (packet)->Side))
 
-#define VERTEX(v, slot) LOAD(PLACE_OF(packet, v) + (slot)*HALF_ROW)
+#define VERTEX(v, slot) LOAD(SLOTS_OF(packet, v) + (slot)*HALF_ROW)
 #define LOAD_VERTEX(v)                                                                             \
   const FLOATS X##v = VERTEX(v, 0), Y##v = VERTEX(v, 1), Z##v = VERTEX(v, 2);
 #define LOAD_VERTICES                                                                              \

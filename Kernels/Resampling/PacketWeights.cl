@@ -69,11 +69,11 @@ static __attribute__((always_inline)) void FindNormals(const PacketCandidates* c
   f->n##y = fma(a##z, b##x, -(a##x * b##z));                                                       \
   f->n##z = fma(a##x, b##y, -(a##y * b##x));
 #if LANES > 1
-  const int turned = packet->Odd;
+  const int turned = packet->Parity;
 #else
   // Every second work-item has an odd cell, and a branch would be divergent. Changing the sign is exact if the
   // normals are exact.
-  const int turned = packet->Odd && c->Extent > EXACT_NORMALS_EXTENT;
+  const int turned = packet->Parity && c->Extent > EXACT_NORMALS_EXTENT;
 #endif
   if (turned)
   {
@@ -87,7 +87,7 @@ static __attribute__((always_inline)) void FindNormals(const PacketCandidates* c
     NORMAL(N5, e6, e3)
     NORMAL(N6, e3, e5)
 #if LANES == 1
-    const float sign = packet->Odd ? -1.0f : 1.0f;
+    const float sign = packet->Parity ? -1.0f : 1.0f;
 #define SIGN(v) f->v *= sign;
     SIGN(N3x) SIGN(N3y) SIGN(N3z) SIGN(N5x) SIGN(N5y) SIGN(N5z) SIGN(N6x) SIGN(N6y) SIGN(N6z)
 #endif

@@ -744,7 +744,8 @@ __kernel void Resample(GIVEN_PARAMETERS, __global const uint* bricks, __local in
     const int x = first.x + i % width;
     const int y = first.y + i / width % height;
     const int z = first.z + i / (width * height);
-    // Samples at the border of the mesh also depend on cells before the first and after the last layer of the launch.
+    // Samples at the border of the sampling mesh also depend on cells before the first and after the last layer of the
+    // launch.
     const int4 q = x >= 0 && y >= 0 && z >= max(p.LayersBegin - 1, 0) && x < p.Size[0] &&
         y < p.Size[1] && z < p.Size[2] && z <= p.LayersEnd + 1
       ? VertexPosition(&unmapped, x, y, z, &p)

@@ -56,7 +56,7 @@ static void DisplaceRow(const Mapping* m, int x, int end, int i, int y, int z,
       const RunDisplacement d = MakeRunDisplacement(record, y, z);
       do
       {
-        // Broadcasting a number costs nothing if it is loaded from memory, but it does if it is an element of a vector.
+        // A broadcast is free if its operand is loaded from memory, but not if it is an element of a vector.
         ROW_MEMORY float* const slot = slots + x;
         const float16 offset = ((float)x + steps) - record->Origin[0];
 #define DISPLACE_AXIS(axis, across)                                                                \
@@ -153,15 +153,15 @@ static __attribute__((always_inline)) void DisplaceSixteen(const DisplacedRow* r
 // The offsets of two nodes are read as one 64-bit number, because loads take most of the time here. These macros load
 // the node with the first or with the second offset.
 #ifdef __ENDIAN_LITTLE__
-#define FIRST_NODE(m, slots) NODE((m)->Nodes, (ulong)(uint)(slots))
-#define SECOND_NODE(m, slots) NODE((m)->Nodes, (slots) >> 32)
+#define FIRST_NODE(m, offsets) NODE((m)->Nodes, (ulong)(uint)(offsets))
+#define SECOND_NODE(m, offsets) NODE((m)->Nodes, (offsets) >> 32)
 #else
-#define FIRST_NODE(m, slots) NODE((m)->Nodes, (slots) >> 32)
-#define SECOND_NODE(m, slots) NODE((m)->Nodes, (ulong)(uint)(slots))
+#define FIRST_NODE(m, offsets) NODE((m)->Nodes, (offsets) >> 32)
+#define SECOND_NODE(m, offsets) NODE((m)->Nodes, (ulong)(uint)(offsets))
 #endif
-#define FOUR_NODES(WHICH, m, slots)                                                               \
-  (float16)(WHICH##_NODE(m, slots##0), WHICH##_NODE(m, slots##1), WHICH##_NODE(m, slots##2),    \
-    WHICH##_NODE(m, slots##3))
+#define FOUR_NODES(WHICH, m, offsets)                                                              \
+  (float16)(WHICH##_NODE(m, offsets##0), WHICH##_NODE(m, offsets##1), WHICH##_NODE(m, offsets##2), \
+    WHICH##_NODE(m, offsets##3))
 
 // Returns the displacements of four vertices with consecutive links, with the operations of FollowLink.
 static float16 FollowFourLinks(const Mapping* m, __global const VertexLink* links)
@@ -171,15 +171,15 @@ static float16 FollowFourLinks(const Mapping* m, __global const VertexLink* link
   const float16 b = OF_EACH_FOUR(four, 2);
   const float16 c = OF_EACH_FOUR(four, 3);
   const float16 d = 1.0f - a - b - c;
-#define PLACES_OF(k)                                                                               \
+#define LOAD_NODE_OFFSETS(k)                                                                       \
   __global const ulong* const tetrahedron##k =                                                     \
     (__global const ulong*)(m->Tetrahedra + links[k].Tetrahedron);                                 \
   const ulong xy##k = tetrahedron##k[0];                                                           \
   const ulong zw##k = tetrahedron##k[1];
-  PLACES_OF(0)
-  PLACES_OF(1)
-  PLACES_OF(2)
-  PLACES_OF(3)
+  LOAD_NODE_OFFSETS(0)
+  LOAD_NODE_OFFSETS(1)
+  LOAD_NODE_OFFSETS(2)
+  LOAD_NODE_OFFSETS(3)
   return MULTIPLY_ADD(FOUR_NODES(SECOND, m, zw), d,
     MULTIPLY_ADD(FOUR_NODES(FIRST, m, zw), c,
       MULTIPLY_ADD(FOUR_NODES(SECOND, m, xy), b, FOUR_NODES(FIRST, m, xy) * a)));

@@ -103,6 +103,10 @@ typedef struct
   float Padding;
 } TetrahedronRecord;
 
+// Numbers that describe a tetrahedron of the deformation mesh at rest: the origin, and the weights
+// of three nodes at the origin and their gradients (RunEvaluation.cl).
+#define DEFORMVOLUME_REST_NUMBERS 15
+
 // Units of 8 bytes per node. Tetrahedra on the device refer to a node by its offset in such units:
 // CPUs multiply an index by 8 in an address at no cost, but not by 16.
 #define DEFORMVOLUME_NODE_STRIDE 2

@@ -14,7 +14,7 @@ namespace deformvolume
 namespace
 {
 
-constexpr std::size_t NumbersOfRest = 15;
+constexpr std::size_t NumbersOfRest = DEFORMVOLUME_REST_NUMBERS;
 
 std::array<double, NumbersOfRest> GetNumbers(const RestTetrahedron& tetrahedron)
 {
@@ -76,7 +76,7 @@ void TetrahedronRecords::Set(const std::vector<RestTetrahedron>& tetrahedra)
   const std::size_t room = std::max<std::size_t>(tetrahedra.size(), 1); // OpenCL needs size > 0
   this->Rest = this->MakeBuffer(room * this->GetRestSize());
   this->Owners = this->MakeBuffer(room * sizeof(std::int32_t));
-  this->Records = this->MakeBuffer((room + 1) * sizeof(TetrahedronRecord));
+  this->Records = this->MakeBuffer(room * sizeof(TetrahedronRecord));
   std::vector<char> rest(tetrahedra.size() * this->GetRestSize());
   std::vector<std::int32_t> owners(tetrahedra.size());
   for (std::size_t i = 0; i < tetrahedra.size(); ++i)
@@ -98,7 +98,8 @@ cl::Event TetrahedronRecords::Evaluate(
   const cl::Kernel kernel = MakeKernel(mapping, "EvaluateTetrahedra", this->Rest, this->Owners,
     tetrahedra, nodes, this->Records, static_cast<cl_uint>(this->Count));
   constexpr std::size_t group = 64;
-  const std::size_t items = (this->Count + group) / group * group;
+  // One group more than whole ones: without tetrahedra there must still be one.
+  const std::size_t items = (this->Count / group + 1) * group;
   this->Current = true;
   return this->Context.Launch(this->Queue, kernel, cl::NDRange(items), cl::NDRange(group));
 }

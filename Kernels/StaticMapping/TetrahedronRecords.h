@@ -36,8 +36,8 @@ public:
 
   /// The tetrahedron of each record.
   const cl::Buffer& GetOwners() const { return this->Owners; }
-  /// Calls visit(numbers) with the 15 numbers of each record at rest (RunEvaluation.cl). For CPU
-  /// devices.
+  /// Calls visit(numbers) with DEFORMVOLUME_REST_NUMBERS numbers for each record, which describe
+  /// the tetrahedron at rest (RunEvaluation.cl). For CPU devices.
   void VisitRest(const std::function<void(const double*)>& visit) const;
 
   std::uint64_t GetMemory() const;
@@ -50,7 +50,7 @@ private:
   OpenCLContext& Context;
   cl::CommandQueue Queue;
   std::uint64_t AllocationLimit;
-  cl::Buffer Rest; // 15 reals per record, see RunEvaluation.cl
+  cl::Buffer Rest; // DEFORMVOLUME_REST_NUMBERS reals per record, see RunEvaluation.cl
   cl::Buffer Owners;
   cl::Buffer Records;
   std::size_t Count = 0;
