@@ -148,7 +148,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(
     return;
   }
   const deformvolume::FadedLinks& links = this->State->Mapping.GetMapping().Faded;
-  if (!links.AreThere() || !this->State->Mapping.IsCurrent(mesh.GetMeshAtRest(), mapped))
+  if (links.IsEmpty() || !this->State->Mapping.IsCurrent(mesh.GetMeshAtRest(), mapped))
   {
     return;
   }

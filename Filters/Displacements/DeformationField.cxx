@@ -71,11 +71,11 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   this->FieldSpacing = glm::abs(geometry.Spacing);
   this->IndexToField =
     GetIndexToField(geometry, source.Volume, source.FieldIsInverse ? &source.ToOutput : nullptr);
-  const int step = source.FieldIsInverse
+  const int stride = source.FieldIsInverse
     ? 1
-    : GetStep(source.Volume.PointExtent, this->IndexToField, this->FieldDimensions);
+    : GetFieldStride(source.Volume.PointExtent, this->IndexToField, this->FieldDimensions);
   vtkSmartPointer<vtkDataArray> taken;
-  if (step > 1)
+  if (stride > 1)
   {
     // Take only the vectors at the voxels: those between them are not used.
     const Extent& voxels = source.Volume.PointExtent;
@@ -89,13 +89,13 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
       this->IndexToField[4 * axis + axis] = 1.0;
       first = -voxels[2 * axis];
     }
-    taken = TakeTuples(array, points, voxels, step);
+    taken = TakeTuples(array, points, voxels, stride);
     array = taken;
     if (!undefined.empty())
     {
       vtkNew<vtkUnsignedCharArray> all;
       all->SetArray(undefined.data(), static_cast<vtkIdType>(undefined.size()), 1);
-      const auto some = TakeTuples(all, points, voxels, step);
+      const auto some = TakeTuples(all, points, voxels, stride);
       const auto* values = static_cast<unsigned char*>(some->GetVoidPointer(0));
       undefined = std::vector<unsigned char>(values, values + some->GetNumberOfTuples());
     }

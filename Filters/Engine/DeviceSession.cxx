@@ -216,7 +216,7 @@ void DeviceSession::SendMesh(const RestMesh& mesh, const StaticMapping& mapping,
 {
   const std::vector<Tetrahedron>* tetrahedra = &mesh.GetTetrahedra();
   std::size_t nodes = mesh.GetPoints().size();
-  this->HasFadedMesh = mapping.Faded.AreThere();
+  this->HasFadedMesh = !mapping.Faded.IsEmpty();
   if (this->HasFadedMesh)
   {
     this->Faded.Set(mapping.Faded, *tetrahedra, nodes);
@@ -246,10 +246,10 @@ void DeviceSession::SendConnectivity(const RestMesh& mesh, const StaticMapping& 
       tetrahedra.data(), tetrahedra.size(), nodes, changes ? &*changes : nullptr);
     return;
   }
-  const std::vector<TetrahedronChange> withRecords = this->Faded.Change(mapping.Faded, *changes);
+  const std::vector<TetrahedronChange> allChanges = this->Faded.Change(mapping.Faded, *changes);
   const std::vector<Tetrahedron>& all = this->Faded.GetTetrahedra();
   this->Deformer.ChangeConnectivity(
-    all.data(), all.size(), this->Faded.GetNumberOfNodes(), &withRecords);
+    all.data(), all.size(), this->Faded.GetNumberOfNodes(), &allChanges);
 }
 
 bool DeviceSession::CanFollow(const RestMesh& mesh) const

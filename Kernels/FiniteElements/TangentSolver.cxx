@@ -93,7 +93,7 @@ void TangentSolver::JudgeLevels(int iterations, double digits)
 
 ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
   const std::vector<unsigned char>& isFree, const std::vector<glm::dvec3>& rightHandSide,
-  const Limits& limits, bool repeats, std::vector<glm::dvec3>& solution)
+  const Limits& limits, bool usesHistory, std::vector<glm::dvec3>& solution)
 {
   const double squared = SumOfProducts(watch, rightHandSide, rightHandSide);
   const double wanted = limits.Tolerance * limits.Tolerance * squared;
@@ -103,12 +103,12 @@ ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
   }
   Preconditioner& preconditioner = this->Precondition(watch, isFree);
   double begin = squared;
-  if (repeats)
+  if (usesHistory)
   {
     this->History.Guess(watch, this->Matrix, isFree, rightHandSide, solution, this->Residual);
     begin = SumOfProducts(watch, this->Residual, this->Residual);
   }
-  if (!repeats || !(begin < squared))
+  if (!usesHistory || !(begin < squared))
   {
     solution.assign(rightHandSide.size(), glm::dvec3(0.0));
     this->Residual = rightHandSide;
@@ -125,7 +125,7 @@ ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
     }
     return result;
   }
-  if (repeats)
+  if (usesHistory)
   {
     this->History.Add(solution, rightHandSide, this->Residual);
   }

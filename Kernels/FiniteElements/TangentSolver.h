@@ -54,11 +54,11 @@ public:
   /// Discards the preconditioner and all earlier solutions.
   void Forget();
 
-  /// Solves for the free nodes. The right-hand side must be 0 at other nodes. repeats: whether the
-  /// system resembles earlier ones that were solved with `repeats`; the solver then starts from
-  /// their solutions.
+  /// Solves for the free nodes. The right-hand side must be 0 at other nodes. usesHistory:
+  /// whether the system resembles earlier ones that were solved with `usesHistory`; the solver then
+  /// starts from their solutions.
   ConjugateGradients::Result Solve(Watch& watch, const std::vector<unsigned char>& isFree,
-    const std::vector<glm::dvec3>& rightHandSide, const Limits& limits, bool repeats,
+    const std::vector<glm::dvec3>& rightHandSide, const Limits& limits, bool usesHistory,
     std::vector<glm::dvec3>& solution);
 
 private:

@@ -68,17 +68,17 @@ DisplacementBounds IncrementalUpdate::ComputeAllBounds(
 IncrementalUpdate::Box IncrementalUpdate::MakeBox(
   std::size_t subBrick, const DisplacementBounds& bounds) const
 {
-  const Extent vertices = this->Grid.GetVertices(subBrick, 0);
+  const Extent vertices = this->SubBricks.GetVertices(subBrick, 0);
   const double excess = this->Points.GetExcess(subBrick);
   if (GetNumberOfCells(vertices) == 0)
   {
     return Box();
   }
   IndexBounds voxels = GetBox(vertices);
-  const glm::dvec3 first = GetBox(this->Shape).Min;
+  const glm::dvec3 first = GetBox(this->Voxels).Min;
   voxels.Min += first;
   voxels.Max += first;
-  const IndexBounds rest = GetOutputTransform(this->Shape).ToOutput(voxels);
+  const IndexBounds rest = GetOutputTransform(this->Voxels).ToOutput(voxels);
   Box box;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -130,7 +130,7 @@ IncrementalUpdate::Box IncrementalUpdate::GetDirtyBox() const
 template <typename IsWanted>
 void IncrementalUpdate::FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements)
 {
-  ParallelForParts(this->Grid.GetNumberOfBricks(), StepSize,
+  ParallelForParts(this->SubBricks.GetNumberOfBricks(), StepSize,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t subBrick = begin; subBrick < end; ++subBrick)

@@ -13,31 +13,31 @@ namespace
 {
 
 // In voxels around a sub-brick. A cell depends on its own vertices, on their states and, at the
-// border of the mesh, on cells that share vertices with it. The state of a vertex depends on the
-// vertices and cells that share a cell with it. So a change of a mask affects cells up to one voxel
-// away.
+// border of the sampling mesh, on cells that share vertices with it. The state of a vertex depends
+// on the vertices and cells that share a cell with it. So a change of a mask affects cells up to
+// one voxel away.
 constexpr int MaskHalo = 1;
 
 } // namespace
 
 void IncrementalUpdate::SetHalo(int halo)
 {
-  if (this->Grid.Halo != halo)
+  if (this->SubBricks.Halo != halo)
   {
-    this->Bricks.Halo = this->Grid.Halo = halo;
+    this->Bricks.Halo = this->SubBricks.Halo = halo;
     this->Points = this->PointsOfBricks = BrickPoints(); // a wider halo has more points
   }
 }
 
 std::vector<unsigned char> IncrementalUpdate::AddCut(const std::vector<CutVertex>& vertices)
 {
-  std::vector<unsigned char> found(vertices.empty() ? 0 : this->Grid.GetNumberOfBricks());
+  std::vector<unsigned char> found(vertices.empty() ? 0 : this->SubBricks.GetNumberOfBricks());
   for (const CutVertex& v : vertices)
   {
     this->ForSubBricks({ { v.X, v.X, v.Y, v.Y, v.Z, v.Z } }, 0, 0,
       [&](std::size_t subBrick) { found[subBrick] = 1; });
   }
-  this->IsCut.resize(this->Grid.GetNumberOfBricks());
+  this->IsCut.resize(this->SubBricks.GetNumberOfBricks());
   for (std::size_t subBrick = 0; subBrick < found.size(); ++subBrick)
   {
     if (found[subBrick] && !this->IsCut[subBrick])
@@ -89,7 +89,7 @@ void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
     });
   const auto isMoved = [&](std::size_t subBrick)
   { return near[this->Sections[subBrick].first] && hasMoved(this->Points, subBrick); };
-  ParallelForParts(this->Grid.GetNumberOfBricks(), StepSize,
+  ParallelForParts(this->SubBricks.GetNumberOfBricks(), StepSize,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t subBrick = begin; subBrick < end; ++subBrick)
@@ -141,7 +141,7 @@ std::optional<std::vector<Extent>> IncrementalUpdate::ChangeTetrahedra(
   std::vector<Extent> boxes;
   for (const BrickPoints::ChangesOfBrick& subBrick : subBricks)
   {
-    boxes.push_back(this->Grid.GetVertices(subBrick.first, 0));
+    boxes.push_back(this->SubBricks.GetVertices(subBrick.first, 0));
     if (this->Tracking)
     {
       this->Move(subBrick.first, last); // the last box is that of the old nodes
@@ -169,8 +169,8 @@ void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int halo, Body
   {
     const auto find = [&](int vertex)
     {
-      const int index = (vertex - this->Grid.Origin[axis]) / this->Grid.Cells[axis];
-      return std::min(std::max(index, 0), this->Grid.Count[axis] - 1);
+      const int index = (vertex - this->SubBricks.Origin[axis]) / this->SubBricks.Cells[axis];
+      return std::min(std::max(index, 0), this->SubBricks.Count[axis] - 1);
     };
     subBricks[2 * axis] = find(box[2 * axis] - halo - 1);
     subBricks[2 * axis + 1] = find(box[2 * axis + 1] + more + halo);
@@ -178,8 +178,8 @@ void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int halo, Body
   ForEachPoint(subBricks,
     [&](int x, int y, int z)
     {
-      const std::size_t subBrick = this->Grid.GetNumber(x, y, z);
-      const Extent region = this->Grid.GetVertices(subBrick, halo);
+      const std::size_t subBrick = this->SubBricks.GetNumber(x, y, z);
+      const Extent region = this->SubBricks.GetVertices(subBrick, halo);
       bool touches = true;
       for (int axis = 0; axis < 3; ++axis)
       {
@@ -200,7 +200,7 @@ void IncrementalUpdate::ChangeMask(const std::vector<Extent>& changes, bool ofCe
     return;
   }
   // A smooth cut also depends on the states of the vertices whose displacements it continues.
-  const bool hasCuts = this->Grid.Halo != BrickGrid::LeastHalo;
+  const bool hasCuts = this->SubBricks.Halo != BrickGrid::LeastHalo;
   const int halo = MaskHalo + (hasCuts ? BrickGrid::HaloOfCuts : 0);
   for (const Extent& box : changes)
   {

@@ -13,8 +13,8 @@ void IncrementalUpdate::Start(
   const BrickGrid& bricks, const VoxelGrid& voxelGrid, const Extent& output)
 {
   this->Bricks = bricks;
-  this->Grid = bricks.GetSubBricks();
-  const std::size_t subBricks = this->Grid.GetNumberOfBricks();
+  this->SubBricks = bricks.GetSubBricks();
+  const std::size_t subBricks = this->SubBricks.GetNumberOfBricks();
   if (output != this->OutputExtent || this->Known.size() != subBricks)
   {
     this->Known.assign(subBricks, 0); // boxes are relative to the output
@@ -24,10 +24,10 @@ void IncrementalUpdate::Start(
   {
     for (std::size_t subBrick = 0; subBrick < subBricks; ++subBrick)
     {
-      this->Sections.push_back(bricks.GetBrick(this->Grid, subBrick));
+      this->Sections.push_back(bricks.GetBrick(this->SubBricks, subBrick));
     }
   }
-  this->Shape = voxelGrid;
+  this->Voxels = voxelGrid;
   this->OutputExtent = output;
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -41,8 +41,8 @@ void IncrementalUpdate::Start(
 
 void IncrementalUpdate::Finish()
 {
-  this->Moved.assign(this->Grid.GetNumberOfBricks(), 0);
-  this->Masked.assign(this->Grid.GetNumberOfBricks(), 0);
+  this->Moved.assign(this->SubBricks.GetNumberOfBricks(), 0);
+  this->Masked.assign(this->SubBricks.GetNumberOfBricks(), 0);
 }
 
 void IncrementalUpdate::MoveAll(const std::optional<DisplacementBounds>& after)
@@ -65,8 +65,8 @@ void IncrementalUpdate::ForgetMapping()
 bool IncrementalUpdate::HasOnlyInterior(
   std::size_t subBrick, const unsigned char* state, const Extent& box) const
 {
-  const Extent vertices = this->Grid.GetVertices(subBrick, 0);
-  const std::array<int, 3>& size = this->Grid.Size;
+  const Extent vertices = this->SubBricks.GetVertices(subBrick, 0);
+  const std::array<int, 3>& size = this->SubBricks.Size;
   if (!this->IsCut.empty() && this->IsCut[subBrick])
   {
     return false; // the sides of a cut can separate
@@ -103,7 +103,7 @@ Extent IncrementalUpdate::GetMovedVertices() const
   {
     if (this->Moved[subBrick])
     {
-      Include(box, this->Grid.GetVertices(subBrick, 0));
+      Include(box, this->SubBricks.GetVertices(subBrick, 0));
     }
   }
   return box;
@@ -112,7 +112,7 @@ Extent IncrementalUpdate::GetMovedVertices() const
 bool IncrementalUpdate::IsInside(const unsigned char* state, const Extent& box) const
 {
   std::atomic<bool> inside{ true };
-  ParallelForParts(this->Grid.GetNumberOfBricks(), StepSize,
+  ParallelForParts(this->SubBricks.GetNumberOfBricks(), StepSize,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t subBrick = begin; subBrick < end && inside; ++subBrick)

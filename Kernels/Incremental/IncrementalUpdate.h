@@ -129,7 +129,7 @@ private:
   /// False for sub-bricks entirely outside the volume: the last bricks can extend beyond it.
   bool HasCells(std::size_t subBrick) const
   {
-    return GetNumberOfCells(this->Grid.GetVertices(subBrick, 0)) > 0;
+    return GetNumberOfCells(this->SubBricks.GetVertices(subBrick, 0)) > 0;
   }
   bool IsChanged(std::size_t subBrick) const
   {
@@ -168,8 +168,8 @@ private:
 
   bool Tracking = false;
   BrickGrid Bricks;
-  BrickGrid Grid; // of sub-bricks; all members below refer to these
-  VoxelGrid Shape;
+  BrickGrid SubBricks; // all members below refer to these
+  VoxelGrid Voxels;
   Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
   std::array<int, 3> PatchCount{ { 0, 0, 0 } };
   BrickPoints Points;

@@ -24,7 +24,7 @@ namespace
 
 // Points within this distance from the mesh, relative to its diagonal, count as inside. Surfaces of
 // meshes are often computed in single precision.
-constexpr double MeshBorderTolerance = 1e-6;
+constexpr double MeshBoundaryTolerance = 1e-6;
 // The following are added, relative to the largest coordinate: rounding of points.
 constexpr double FloatRounding = 1.0 / (1 << 23);
 constexpr double DoubleRounding = 1e-14;
@@ -71,7 +71,7 @@ public:
 
     double GetBorderTolerance(bool areFloats) const
     {
-      return this->Diagonal * MeshBorderTolerance +
+      return this->Diagonal * MeshBoundaryTolerance +
         this->Largest * (areFloats ? FloatRounding : DoubleRounding);
     }
   };

@@ -175,14 +175,14 @@ void FadedLinks::DropUnused(std::size_t numberOfTetrahedra, std::vector<VertexLi
   this->Faces = std::move(kept);
 }
 
-Tetrahedron FadedLinks::GetRecord(
-  std::size_t record, const std::vector<Tetrahedron>& tetrahedra, std::int32_t still) const
+Tetrahedron FadedLinks::GetFadedTetrahedron(
+  std::size_t index, const std::vector<Tetrahedron>& tetrahedra, std::int32_t still) const
 {
-  if (record == 0)
+  if (index == 0)
   {
     return { { still, still, still, still } };
   }
-  const TetrahedronFace& face = this->Faces[record - 1];
+  const TetrahedronFace& face = this->Faces[index - 1];
   const auto nodes = face.GetNodes(tetrahedra[static_cast<std::size_t>(face.Tetrahedron)]);
   return { { nodes[0], nodes[1], nodes[2], still } };
 }

@@ -25,11 +25,11 @@ namespace deformvolume
 /// distance d from the mesh is displaced by w(d / FadeDistance) times the displacement of the
 /// closest point on the boundary, where w(s) = 1 - 3 s^2 + 2 s^3 for s < 1 and 0 otherwise.
 ///
-/// The closest point lies on a face, so its weights make a link. Links refer to records: additional
-/// tetrahedra whose numbers follow those of the mesh. All records contain a node that never moves.
-/// It has the remaining weight, so that the weights add up to 1. The first record is for voxels
-/// that do not move, and consists of this node only. Each further record has the nodes of one
-/// boundary face and this node.
+/// The closest point lies on a face, so its weights make a link. Links refer to faded tetrahedra:
+/// additional tetrahedra whose numbers follow those of the mesh. All of them contain a node that
+/// never moves. It has the remaining weight, so that the weights add up to 1. The first faded
+/// tetrahedron is for voxels that do not move, and consists of this node only. Each further one has
+/// the nodes of one boundary face and this node.
 class DEFORMVOLUME_EXPORT FadedLinks
 {
 public:
@@ -41,16 +41,19 @@ public:
     double fadeDistance, std::vector<VertexLink>& links,
     const std::function<void(double)>& progress);
 
-  /// Whether there are any records.
-  bool AreThere() const { return this->FadeDistance >= 0.0; }
-  /// The faces of the records after the first, in ascending order of tetrahedra.
+  /// Whether there are no faded tetrahedra: voxels outside the mesh are not kept.
+  bool IsEmpty() const { return this->FadeDistance < 0.0; }
+  /// The faces of the faded tetrahedra after the first, in ascending order of tetrahedra.
   const std::vector<TetrahedronFace>& GetFaces() const { return this->Faces; }
-  /// Number of records.
-  std::size_t GetNumberOfRecords() const { return this->AreThere() ? 1 + this->Faces.size() : 0; }
-  /// Returns the nodes of a record. still: the node that never moves. tetrahedra: the current
-  /// tetrahedra of the mesh.
-  Tetrahedron GetRecord(
-    std::size_t record, const std::vector<Tetrahedron>& tetrahedra, std::int32_t still) const;
+  /// Number of faded tetrahedra.
+  std::size_t GetNumberOfFadedTetrahedra() const
+  {
+    return this->IsEmpty() ? 0 : 1 + this->Faces.size();
+  }
+  /// Returns the nodes of a faded tetrahedron. still: the node that never moves. tetrahedra: the
+  /// current tetrahedra of the mesh.
+  Tetrahedron GetFadedTetrahedron(
+    std::size_t index, const std::vector<Tetrahedron>& tetrahedra, std::int32_t still) const;
 
   /// Returns the displacement of a linked voxel. tetrahedra: the current tetrahedra of the mesh.
   /// displacements: three floats per node.
@@ -92,7 +95,7 @@ private:
   void FindBlocks(
     const Extent& voxels, std::size_t numberOfTetrahedra, const std::vector<VertexLink>& links);
 
-  double FadeDistance = -1.0; // negative: there are no records
+  double FadeDistance = -1.0; // negative: there are no faded tetrahedra
   std::vector<TetrahedronFace> Faces;
   std::vector<Block> Blocks;
   std::vector<std::int32_t> FacesOfBlocks;

@@ -15,9 +15,9 @@ void FadedMesh::Set(
   this->Displacements.assign(3 * this->NumberOfNodes, 0.0F);
   this->Tetrahedra = tetrahedra;
   const auto still = static_cast<std::int32_t>(this->NumberOfNodes - 1);
-  for (std::size_t record = 0; record < links.GetNumberOfRecords(); ++record)
+  for (std::size_t i = 0; i < links.GetNumberOfFadedTetrahedra(); ++i)
   {
-    this->Tetrahedra.push_back(links.GetRecord(record, tetrahedra, still));
+    this->Tetrahedra.push_back(links.GetFadedTetrahedron(i, tetrahedra, still));
   }
 }
 
@@ -35,13 +35,13 @@ std::vector<TetrahedronChange> FadedMesh::Change(
     {
       const std::size_t number =
         this->NumberOfTetrahedra + 1 + static_cast<std::size_t>(face - faces.begin());
-      TetrahedronChange& record = all.emplace_back();
-      record.Number = static_cast<std::int32_t>(number);
-      record.Before = record.After = this->Tetrahedra[number];
+      TetrahedronChange& faded = all.emplace_back();
+      faded.Number = static_cast<std::int32_t>(number);
+      faded.Before = faded.After = this->Tetrahedra[number];
       const auto nodes = face->GetNodes(change.After);
-      std::copy(nodes.begin(), nodes.end(), record.After.begin());
-      this->Tetrahedra[number] = record.After;
-      if (record.After == record.Before)
+      std::copy(nodes.begin(), nodes.end(), faded.After.begin());
+      this->Tetrahedra[number] = faded.After;
+      if (faded.After == faded.Before)
       {
         all.pop_back();
       }

@@ -13,8 +13,8 @@
 namespace deformvolume
 {
 
-/// A deformation mesh with the records of FadedLinks, for a VolumeDeformer. The records follow the
-/// tetrahedra of the mesh. The last node never moves.
+/// A deformation mesh with the faded tetrahedra of FadedLinks, for a VolumeDeformer. They follow
+/// the tetrahedra of the mesh. The last node never moves.
 class DEFORMVOLUME_EXPORT FadedMesh
 {
 public:
@@ -26,14 +26,14 @@ public:
   /// a mesh is split.
   bool HasRoom(std::size_t numberOfNodes) const { return numberOfNodes < this->NumberOfNodes; }
   /// Applies changes of the nodes of tetrahedra. The positions at rest must not change. Returns the
-  /// changes together with the resulting changes of records.
+  /// changes together with the resulting changes of faded tetrahedra.
   std::vector<TetrahedronChange> Change(
     const FadedLinks& links, const std::vector<TetrahedronChange>& changes);
   /// Set the displacements. changes: the nodes whose displacements have changed since the last
   /// call; null: any may have changed.
   void Move(const float* displacements, std::size_t numberOfNodes, const PointRanges* changes);
 
-  /// The tetrahedra of the mesh, followed by the records.
+  /// The tetrahedra of the mesh, followed by the faded tetrahedra.
   const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Tetrahedra; }
   /// Number of nodes, with those in reserve and the node that never moves, which is the last.
   std::size_t GetNumberOfNodes() const { return this->NumberOfNodes; }
@@ -43,7 +43,7 @@ public:
 private:
   std::vector<Tetrahedron> Tetrahedra;
   std::vector<float> Displacements;
-  std::size_t NumberOfTetrahedra = 0; // without records
+  std::size_t NumberOfTetrahedra = 0; // of the mesh
   std::size_t NumberOfNodes = 0;
 };
 

@@ -52,7 +52,7 @@ struct StaticMapping
   /// The boundary of the mesh within the volume. Empty unless voxels outside the mesh are
   /// discarded.
   MeshBoundary Boundary;
-  /// The records of links if voxels outside the mesh are kept (FadedMesh).
+  /// The links of voxels outside the mesh, if these voxels are kept (FadedMesh).
   FadedLinks Faded;
   /// Number of voxels inside the mesh. Extrapolated and kept voxels do not count.
   std::int64_t NumberOfInnerVoxels = 0;

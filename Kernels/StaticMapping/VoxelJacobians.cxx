@@ -233,7 +233,7 @@ void VoxelJacobians::SetMapping(const Extent& voxels, const glm::dvec3& spacing,
         }
       });
   }
-  if (!this->Faded.AreThere())
+  if (this->Faded.IsEmpty())
   {
     ExtrapolateLinks(voxels, spacing, restPoints, tetrahedra, links, [](double) {});
   }
@@ -243,7 +243,7 @@ void VoxelJacobians::SetMapping(const Extent& voxels, const glm::dvec3& spacing,
   {
     this->Owners[i] = links[i].Tetrahedron < mostTetrahedra ? links[i].Tetrahedron : -1;
   }
-  this->Links = this->Faded.AreThere() ? std::move(links) : std::vector<VertexLink>();
+  this->Links = this->Faded.IsEmpty() ? std::vector<VertexLink>() : std::move(links);
 }
 
 void VoxelJacobians::Compute(const OutputMap& toOutput, const std::vector<glm::dvec3>& restPoints,
@@ -281,7 +281,7 @@ void VoxelJacobians::Compute(const OutputMap& toOutput, const std::vector<glm::d
         jacobians[i] = owner >= 0 ? ofTetrahedra[static_cast<std::size_t>(owner)] : 1.0F;
       }
     });
-  if (this->Faded.AreThere())
+  if (!this->Faded.IsEmpty())
   {
     this->ComputeOutside(toOutput, tetrahedra, displacements, jacobians);
   }

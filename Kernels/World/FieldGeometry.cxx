@@ -17,10 +17,10 @@ namespace
 
 // Rounds to multiples of 2^-32, far below a voxel. Products of matrices and their inverses have
 // rounding errors, which would put the last row of voxels outside a field of the same extent.
-double RoundToGrain(double value)
+double RoundIndex(double index)
 {
-  constexpr double grain = 4294967296.0;
-  return std::round(value * grain) / grain;
+  constexpr double partsOfVoxel = 4294967296.0; // 2^32
+  return std::round(index * partsOfVoxel) / partsOfVoxel;
 }
 
 // Converts a transform that takes indices of the volume to one that takes indices of the output.
@@ -59,28 +59,28 @@ std::array<double, 12> GetIndexToField(
     for (int column = 0; column < 4; ++column)
     {
       const double first = column == 3 ? field.PointExtent[2 * row] : 0.0;
-      indexToField[4 * row + column] = RoundToGrain(toField[column][row] - first);
+      indexToField[4 * row + column] = RoundIndex(toField[column][row] - first);
     }
   }
   return indexToField;
 }
 
-int GetStep(const Extent& voxels, const std::array<double, 12>& indexToField,
+int GetFieldStride(const Extent& voxels, const std::array<double, 12>& indexToField,
   const std::array<int, 3>& dimensions)
 {
-  const double step = indexToField[0];
-  bool found = step > 1.0 && step == std::floor(step) && step < dimensions[0];
+  const double stride = indexToField[0];
+  bool found = stride > 1.0 && stride == std::floor(stride) && stride < dimensions[0];
   for (int axis = 0; axis < 3; ++axis)
   {
     const double* row = &indexToField[4 * axis];
     for (int k = 0; k < 3; ++k)
     {
-      found = found && row[k] == (axis == k ? step : 0.0);
+      found = found && row[k] == (axis == k ? stride : 0.0);
     }
-    found = found && row[3] == std::floor(row[3]) && step * voxels[2 * axis] + row[3] >= 0.0 &&
-      step * voxels[2 * axis + 1] + row[3] < dimensions[axis];
+    found = found && row[3] == std::floor(row[3]) && stride * voxels[2 * axis] + row[3] >= 0.0 &&
+      stride * voxels[2 * axis + 1] + row[3] < dimensions[axis];
   }
-  return found ? static_cast<int>(step) : 1;
+  return found ? static_cast<int>(stride) : 1;
 }
 
 ImageGeometry GetGridAtRest(const ImageGeometry& volume)
@@ -118,12 +118,13 @@ void SetOutside(const OutsideVoxels& outside, const glm::dvec3& spacing, Displac
   field.Extrapolate = !outside.AreDiscarded();
   if (outside.AreKept())
   {
-    // If FadeDistance is 0, even voxels very close to the field do not move.
+    // A FadeDistance of 0 would give an infinite value. With this limit the displacement fades
+    // within 1e-6 of the distance between points.
     constexpr double most = 1e6;
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-      const double step = spacing[static_cast<int>(axis)] / outside.FadeDistance;
-      field.Fading[axis] = std::min(step, most);
+      const double inverseDistance = spacing[static_cast<int>(axis)] / outside.FadeDistance;
+      field.Fading[axis] = std::min(inverseDistance, most);
     }
   }
 }

@@ -100,7 +100,7 @@ void VectorField::Locate(const ImageGeometry& volume, const OutputMap& toOutput)
   this->IndexToField = GetIndexToField(this->Grid, volume, this->Inverse ? &toOutput : nullptr);
   this->InPlace.reset();
   this->ScannedRevision = 0;
-  if (this->Shared && GetStep(volume.PointExtent, this->IndexToField, this->Dimensions) == 1)
+  if (this->Shared && GetFieldStride(volume.PointExtent, this->IndexToField, this->Dimensions) == 1)
   {
     const glm::dmat3 transform = GetToDisplacement(volume, toOutput, 1.0);
     for (std::size_t i = 0; i < 9; ++i)
@@ -188,15 +188,15 @@ WorldField VectorField::GetWorldField()
 std::vector<std::size_t> VectorField::TakeVoxels(const Extent& voxels)
 {
   std::vector<std::size_t> taken;
-  const int step = GetStep(voxels, this->IndexToField, this->Dimensions);
-  if (step == 1)
+  const int stride = GetFieldStride(voxels, this->IndexToField, this->Dimensions);
+  if (stride == 1)
   {
     return taken;
   }
   const auto get = [&](int axis, int voxel) // index of its point on an axis
   {
     const auto first = static_cast<std::int64_t>(this->IndexToField[4 * axis + 3]);
-    return std::int64_t{ step } * voxel + first;
+    return std::int64_t{ stride } * voxel + first;
   };
   taken.reserve(static_cast<std::size_t>(GetNumberOfPoints(voxels)));
   ForEachPoint(voxels,

@@ -65,6 +65,7 @@ struct WorldArray : VolumeArray
   bool IsDensity = false;
 };
 
+/// What WorldDeformer::Deform() computes, and where it writes the results.
 struct WorldRequest
 {
   /// Empty: the whole output.
@@ -96,8 +97,10 @@ struct WorldRequest
   std::function<bool(double)> Progress;
 };
 
+/// What WorldDeformer::Deform() has done.
 struct WorldReport : DeformReport
 {
+  /// Name of the device.
   std::string Device;
   Resampling Method = Resampling::Exact;
   /// All warnings, separated by spaces; "" if there are none.
@@ -169,6 +172,7 @@ private:
   /// Returns the whole extent of the output. Must be called after UpdateDeformation().
   Extent FindWholeExtent();
 
+  /// Forgets what the device holds, so that all data are sent and the whole output is written.
   void Forget();
 
   bool IsMesh() const { return this->Deformation == Deformations::Mesh; }
@@ -244,29 +248,35 @@ private:
   SplitNodes Splits;
 
   // Additional arrays, and the data for which they were made.
-  std::array<std::vector<float>, 3> Positions;
+  std::array<std::vector<float>, 3> RestPositions;
   std::optional<ImageGeometry> PositionsVolume;
   std::array<std::vector<float>, 3> PositionsOutput;
-  VoxelJacobians OfMesh;
-  std::uint64_t OfMeshVersion = 0; // of the mapping
+  VoxelJacobians MeshJacobians;
+  std::uint64_t MeshJacobiansVersion = 0; // of the mapping
   std::vector<float> Jacobians;
   std::vector<float> JacobiansOutput;  // if only densities need them
   std::int64_t NumberOfLostVoxels = 0; // of densities, in the last output
 
-  // The data on the device. After an exception these are not known, and everything is sent again.
+  /// The data on the device.
+  struct SentData
+  {
+    VoxelGrid Grid;
+    std::size_t Width = 0; // size of the largest tuple, in bytes
+    bool ForLinks = false;
+    std::vector<VolumeArray> Arrays;
+    std::uint64_t ArraysVersion = 0;
+    std::uint64_t MasksVersion = 0;
+    Deformations Deformation = Deformations::None;
+    bool ForRasterization = false;
+    std::uint64_t Shape = 0; // of the mapping, or of the mesh for the rasterization
+    std::uint64_t Vectors = 0;
+    OutsideVoxels Outside;
+  };
+
+  // After an exception the data on the device are not known, and everything is sent again.
   bool Known = false;
   std::string Device;
-  VoxelGrid SentGrid;
-  std::size_t SentWidth = 0;
-  bool SentForLinks = false;
-  std::vector<VolumeArray> SentArrays;
-  std::uint64_t SentArraysVersion = 0;
-  std::uint64_t SentMasksVersion = 0;
-  Deformations SentDeformation = Deformations::None;
-  bool SentForRasterization = false;
-  std::uint64_t SentShape = 0; // of the mapping, or of the mesh for the rasterization
-  std::uint64_t SentVectors = 0;
-  OutsideVoxels SentOutside;
+  SentData Sent;
   FadedMesh Faded;
   bool HasFadedMesh = false;
 

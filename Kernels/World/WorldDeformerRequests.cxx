@@ -68,12 +68,7 @@ VolumeArray MakeFloatArray(const std::vector<float>& values, double background)
 
 void WorldDeformer::Forget()
 {
-  this->SentGrid = VoxelGrid();
-  this->SentWidth = 0;
-  this->SentArrays.clear();
-  this->SentArraysVersion = 0;
-  this->SentMasksVersion = 0;
-  this->SentDeformation = Deformations::None;
+  this->Sent = SentData();
   this->LastOutputs.clear();
   this->LastCoverage = nullptr;
 }
@@ -87,9 +82,9 @@ void WorldDeformer::UpdateRestPositions()
   std::array<float*, 3> positions;
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    this->Positions[axis].resize(
+    this->RestPositions[axis].resize(
       static_cast<std::size_t>(GetNumberOfPoints(this->Volume->PointExtent)));
-    positions[axis] = this->Positions[axis].data();
+    positions[axis] = this->RestPositions[axis].data();
   }
   ComputeWorldPositions(*this->Volume, GetPositionsOrigin(*this->Volume), positions);
   this->PositionsVolume = this->Volume;
@@ -106,14 +101,15 @@ void WorldDeformer::UpdateJacobians(const std::function<bool(double)>& progress)
   }
   const MeshAtRest mesh = this->Mesh.GetAtRest();
   const MappedVolume mapped = this->GetMapped();
-  if (this->OfMeshVersion != this->Mapping.GetVersion() || !this->Mapping.IsCurrent(mesh, mapped))
+  if (this->MeshJacobiansVersion != this->Mapping.GetVersion() ||
+    !this->Mapping.IsCurrent(mesh, mapped))
   {
     this->Mapping.Update(mesh, mapped, progress);
-    this->OfMesh.SetMapping(
+    this->MeshJacobians.SetMapping(
       mapped.Part, mapped.Whole.Spacing, this->Mapping.GetMapping(), mesh.Points, mesh.Tetrahedra);
-    this->OfMeshVersion = this->Mapping.GetVersion();
+    this->MeshJacobiansVersion = this->Mapping.GetVersion();
   }
-  this->OfMesh.Compute(this->ToOutput, mesh.Points, mesh.Tetrahedra,
+  this->MeshJacobians.Compute(this->ToOutput, mesh.Points, mesh.Tetrahedra,
     this->Mesh.GetDisplacements().data(), this->Jacobians.data());
 }
 
@@ -166,7 +162,7 @@ std::vector<VolumeArray> WorldDeformer::MakeArrays(
   if (request.RestPositions)
   {
     this->UpdateRestPositions();
-    for (const std::vector<float>& positions : this->Positions)
+    for (const std::vector<float>& positions : this->RestPositions)
     {
       arrays.push_back(MakeFloatArray(positions, request.Background));
     }
@@ -247,31 +243,31 @@ void WorldDeformer::SendVolume(const std::vector<VolumeArray>& arrays, Resamplin
     widest = std::max(widest, GetTupleSize(array));
   }
   const VoxelGrid voxelGrid = this->GetVoxelGrid();
-  if (this->SentGrid.VertexExtent != voxelGrid.VertexExtent ||
-    this->SentGrid.ToOutput != voxelGrid.ToOutput || this->SentWidth < widest ||
-    this->SentForLinks != links)
+  if (this->Sent.Grid.VertexExtent != voxelGrid.VertexExtent ||
+    this->Sent.Grid.ToOutput != voxelGrid.ToOutput || this->Sent.Width < widest ||
+    this->Sent.ForLinks != links)
   {
     this->Forget();
     this->Deformer.SetVoxelGrid(voxelGrid, widest, links);
-    this->SentGrid = voxelGrid;
-    this->SentWidth = widest;
-    this->SentForLinks = links;
+    this->Sent.Grid = voxelGrid;
+    this->Sent.Width = widest;
+    this->Sent.ForLinks = links;
   }
-  if (this->SentArraysVersion != this->ArraysVersion || !AreSame(this->SentArrays, arrays))
+  if (this->Sent.ArraysVersion != this->ArraysVersion || !AreSame(this->Sent.Arrays, arrays))
   {
     this->Deformer.SetArrays(arrays);
-    this->SentArrays = arrays;
-    this->SentArraysVersion = this->ArraysVersion;
+    this->Sent.Arrays = arrays;
+    this->Sent.ArraysVersion = this->ArraysVersion;
     this->LastOutputs.clear();
   }
   this->Deformer.SetArrayOptions(arrays);
-  if (this->SentMasksVersion != this->MasksVersion)
+  if (this->Sent.MasksVersion != this->MasksVersion)
   {
     this->Deformer.SetBlanked(this->Masks.Blanked);
     this->Deformer.SetActiveTetrahedra(this->Masks.ActiveTetrahedra);
     this->Deformer.SetBoundaryDistances(this->Masks.BoundaryDistances);
     this->Deformer.SetCut(this->Masks.CutTetrahedra, this->Masks.CutDistances);
-    this->SentMasksVersion = this->MasksVersion;
+    this->Sent.MasksVersion = this->MasksVersion;
   }
 }
 
@@ -279,15 +275,16 @@ void WorldDeformer::SendMesh(const std::function<bool(double)>& progress)
 {
   const MeshAtRest mesh = this->Mesh.GetAtRest();
   const MappedVolume mapped = this->GetMapped();
-  const bool isSent = this->SentDeformation == Deformations::Mesh && !this->SentForRasterization &&
-    this->SentShape == this->Mapping.GetVersion() && this->Mapping.IsCurrent(mesh, mapped);
+  const bool isSent = this->Sent.Deformation == Deformations::Mesh &&
+    !this->Sent.ForRasterization && this->Sent.Shape == this->Mapping.GetVersion() &&
+    this->Mapping.IsCurrent(mesh, mapped);
   if (!isSent)
   {
     this->Mapping.Update(mesh, mapped, progress);
     const StaticMapping& mapping = this->Mapping.GetMapping();
     const std::vector<Tetrahedron>* tetrahedra = &mesh.Tetrahedra;
     std::size_t nodes = mesh.Points.size();
-    this->HasFadedMesh = mapping.Faded.AreThere();
+    this->HasFadedMesh = !mapping.Faded.IsEmpty();
     if (this->HasFadedMesh)
     {
       this->Faded.Set(mapping.Faded, *tetrahedra, nodes);
@@ -304,14 +301,14 @@ void WorldDeformer::SendMesh(const std::function<bool(double)>& progress)
       this->Deformer.SetMesh(
         tetrahedra->data(), tetrahedra->size(), nodes, mapping.Links.data(), &mapping.Boundary);
     }
-    this->SentShape = this->Mapping.GetVersion();
+    this->Sent.Shape = this->Mapping.GetVersion();
   }
   if (!this->Outside.AreExtrapolated())
   {
     // Links or runs are needed again only for the bounds of an extrapolated deformation.
     this->Mapping.ReleaseVoxels();
   }
-  if (!isSent || this->SentVectors != this->Mesh.GetVectorsVersion())
+  if (!isSent || this->Sent.Vectors != this->Mesh.GetVectorsVersion())
   {
     const float* displacements = this->Mesh.GetDisplacements().data();
     if (this->HasFadedMesh)
@@ -321,36 +318,36 @@ void WorldDeformer::SendMesh(const std::function<bool(double)>& progress)
     }
     this->Deformer.SetNodeDisplacements(displacements, nullptr, true);
   }
-  this->SentVectors = this->Mesh.GetVectorsVersion();
-  this->SentDeformation = Deformations::Mesh;
-  this->SentForRasterization = false;
+  this->Sent.Vectors = this->Mesh.GetVectorsVersion();
+  this->Sent.Deformation = Deformations::Mesh;
+  this->Sent.ForRasterization = false;
 }
 
 void WorldDeformer::SendRestMesh()
 {
   const MeshAtRest mesh = this->Mesh.GetAtRest();
   CheckBoxes(mesh, *this->Volume);
-  const bool isSent = this->SentDeformation == Deformations::Mesh && this->SentForRasterization &&
-    this->SentShape == mesh.ShapeVersion;
+  const bool isSent = this->Sent.Deformation == Deformations::Mesh && this->Sent.ForRasterization &&
+    this->Sent.Shape == mesh.ShapeVersion;
   if (!isSent)
   {
     this->Deformer.SetRestMesh(
       mesh.Tetrahedra.data(), mesh.Tetrahedra.size(), mesh.Points.size(), &mesh.Points.front().x);
   }
-  if (!isSent || this->SentVectors != this->Mesh.GetVectorsVersion())
+  if (!isSent || this->Sent.Vectors != this->Mesh.GetVectorsVersion())
   {
     this->Deformer.SetNodeDisplacements(this->Mesh.GetDisplacements().data(), nullptr, true);
   }
-  this->SentShape = mesh.ShapeVersion;
-  this->SentVectors = this->Mesh.GetVectorsVersion();
-  this->SentDeformation = Deformations::Mesh;
-  this->SentForRasterization = true;
+  this->Sent.Shape = mesh.ShapeVersion;
+  this->Sent.Vectors = this->Mesh.GetVectorsVersion();
+  this->Sent.Deformation = Deformations::Mesh;
+  this->Sent.ForRasterization = true;
 }
 
 void WorldDeformer::SendField()
 {
-  if (this->SentDeformation == Deformations::Field &&
-    this->SentVectors == this->Field.GetVersion() && this->SentOutside == this->Outside)
+  if (this->Sent.Deformation == Deformations::Field &&
+    this->Sent.Vectors == this->Field.GetVersion() && this->Sent.Outside == this->Outside)
   {
     return;
   }
@@ -367,9 +364,9 @@ void WorldDeformer::SendField()
   {
     this->Deformer.SetDisplacementField(this->Field.Get(this->Outside));
   }
-  this->SentDeformation = Deformations::Field;
-  this->SentVectors = this->Field.GetVersion();
-  this->SentOutside = this->Outside;
+  this->Sent.Deformation = Deformations::Field;
+  this->Sent.Vectors = this->Field.GetVersion();
+  this->Sent.Outside = this->Outside;
 }
 
 DeformRequest WorldDeformer::MakeRequest(
@@ -606,7 +603,7 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
       warn(split.empty() ? "" : split + " Cut the volume along the split, or merge these nodes.");
     }
     const FadedLinks& links = this->Mapping.GetMapping().Faded;
-    if (links.AreThere() && this->Mapping.IsCurrent(mesh, this->GetMapped()))
+    if (!links.IsEmpty() && this->Mapping.IsCurrent(mesh, this->GetMapped()))
     {
       warn(FindFaultOfFading(links, mesh.Tetrahedra, this->Mesh.GetDisplacements().data(),
         this->GetOutputGrid().Spacing, this->Outside.FadeDistance));

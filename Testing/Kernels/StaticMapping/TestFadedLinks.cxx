@@ -232,7 +232,7 @@ TEST(FadedLinks, AgainstAllFaces)
           KeepWithin(fadeDistance), StaticMappingForm::Automatic);
         EXPECT_EQ(all.NumberOfInnerVoxels, inside.NumberOfInnerVoxels);
         EXPECT_TRUE(all.Boundary.IsEmpty() && all.Runs.Runs.empty());
-        EXPECT_EQ(all.Faded.GetNumberOfRecords(), 1 + all.Faded.GetFaces().size());
+        EXPECT_EQ(all.Faded.GetNumberOfFadedTetrahedra(), 1 + all.Faded.GetFaces().size());
         EXPECT_TRUE(fadeDistance > 0.0 || all.Faded.GetFaces().empty());
         std::vector<bool> isUsed(all.Faded.GetFaces().size());
         for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
@@ -252,18 +252,18 @@ TEST(FadedLinks, AgainstAllFaces)
                 { { spacing * mesh.Points[face[0]], spacing * mesh.Points[face[1]],
                   spacing * mesh.Points[face[2]] } }));
           }
-          const std::int64_t record =
+          const std::int64_t faded =
             link.Tetrahedron - static_cast<std::int64_t>(mesh.Tetrahedra.size());
-          EXPECT_GE(record, 0);
+          EXPECT_GE(faded, 0);
           const double weight = fadeDistance > 0.0 ? Fade(least / fadeDistance) : 0.0;
-          EXPECT_TRUE(weight > 0.0 || record == 0);
-          if (record <= 0)
+          EXPECT_TRUE(weight > 0.0 || faded == 0);
+          if (faded <= 0)
           {
             EXPECT_LE(weight, 1e-12); // the distance may be FadeDistance, up to rounding
             continue;
           }
-          isUsed[record - 1] = true;
-          const Tetrahedron nodes = all.Faded.GetRecord(record, mesh.Tetrahedra, 12345);
+          isUsed[faded - 1] = true;
+          const Tetrahedron nodes = all.Faded.GetFadedTetrahedron(faded, mesh.Tetrahedra, 12345);
           std::array<std::int32_t, 3> sorted{ { nodes[0], nodes[1], nodes[2] } };
           std::sort(sorted.begin(), sorted.end());
           EXPECT_TRUE(std::binary_search(single.begin(), single.end(), sorted));
@@ -456,7 +456,7 @@ TEST(FadedLinks, Stretched)
     0.0, apart(3.0), true, { { 0, 64, 0, 64, 0, 64 } }));
 }
 
-// When tetrahedra get other nodes at the same positions, the records of faded links follow.
+// When tetrahedra get other nodes at the same positions, the faded tetrahedra follow.
 TEST(FadedLinks, Split)
 {
   std::mt19937 random(10);
@@ -489,10 +489,10 @@ TEST(FadedLinks, Split)
     followed[change.Number] = change.After;
   }
   EXPECT_EQ(followed, faded.GetTetrahedra());
-  for (std::size_t record = 0; record < mapping.Faded.GetNumberOfRecords(); ++record)
+  for (std::size_t i = 0; i < mapping.Faded.GetNumberOfFadedTetrahedra(); ++i)
   {
-    EXPECT_EQ(followed[mesh.Tetrahedra.size() + record],
-      mapping.Faded.GetRecord(record, mesh.Tetrahedra, still));
+    EXPECT_EQ(followed[mesh.Tetrahedra.size() + i],
+      mapping.Faded.GetFadedTetrahedron(i, mesh.Tetrahedra, still));
   }
   EXPECT_TRUE(faded.HasRoom(mesh.Points.size()));
   EXPECT_FALSE(faded.HasRoom(faded.GetNumberOfNodes()));
