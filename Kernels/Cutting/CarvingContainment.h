@@ -17,6 +17,7 @@ enum class CarvingContainment
   All // only found for linear tools
 };
 
+/// Finds how much of a box a tool contains. May return Some where Nothing or All is right.
 CarvingContainment FindContainment(const SnappedBox& box, const CarvingTool& tool);
 
 } // namespace deformvolume

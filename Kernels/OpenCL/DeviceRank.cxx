@@ -32,6 +32,7 @@ bool IsProcessorOfPoCL(const DeviceDescription& device)
       BeginsWith(device.Name, "basic"));
 }
 
+/// From the least to the most preferred, see IsBetter().
 enum Class
 {
   Emulated,

@@ -21,8 +21,8 @@ struct SlabCounts
   std::uint64_t Overstretched = 0;
   std::uint64_t Covered = 0; // only if coverage is bits, after a pass over all cells
   bool HasLarge = false;     // whether there are large cells
-  /// Whether tetrahedra at the border of the mesh do not cover samples that the kernel assumed
-  /// they cover.
+  /// Whether tetrahedra at the border of the sampling mesh do not cover samples that the kernel
+  /// assumed they cover.
   bool MissingWhereAssumed = false;
 
   /// Whether winners must be chosen. Without overlaps every covered voxel is written once. Where

@@ -66,9 +66,9 @@ std::vector<Edge> FindEdges(const ElasticBody& body)
   }
   if (withTwo > 0)
   {
-    throw Error(std::to_string(withTwo) +
-      " edges of the rest mesh have different nodes in their middle in different tetrahedra, the "
-      "first one being that between the nodes " +
+    throw Error("The rest mesh has " + std::to_string(withTwo) +
+      (withTwo == 1 ? " edge" : " edges") +
+      " with more than one mid-side node. The first is between the nodes " +
       std::to_string(first >> 32) + " and " + std::to_string(first & 0xffffffffu) +
       ". Merge the mid-side nodes of each edge.");
   }

@@ -24,7 +24,8 @@ public:
     /// Derivatives of Point with respect to the original position: column k for coordinate k.
     glm::dmat3 Gradient{ 1.0 };
     /// For a point whose displacement fades outside the mesh or the field: length of the
-    /// displacement of the closest point on the border. Otherwise 0.
+    /// displacement of the closest point on the boundary of the mesh or the border of the field.
+    /// Otherwise 0.
     double FadingDisplacement = 0.0;
   };
 

@@ -138,8 +138,7 @@ TEST(TenNodeElements, WrongCells)
   const vtkIdType second = cube->GetPoints()->InsertNextPoint(&middle.x);
   cube->GetPointData()->GetArray("Fixed")->InsertNextTuple1(0.0);
   ReplaceCells(cube, changeFirst(shared, second));
-  EXPECT_TRUE(
-    HasPart(TryMesh(cube), "1 edges of the rest mesh have different nodes in their middle"));
+  EXPECT_TRUE(HasPart(TryMesh(cube), "The rest mesh has 1 edge with more than one mid-side node"));
   // A mid-side node that is a corner of the mesh.
   cube = MakeTenNodeCube();
   ReplaceCells(cube, changeFirst(4, GetIds(cube, 0)[2]));

@@ -187,8 +187,8 @@ public:
       return std::any_of(
         group.begin(), group.end(), [](const Containing* c) { return c->Generic; });
     }
-    // On other parts of the border of the mesh one tetrahedron of the group is chosen, even if
-    // others are missing.
+    // On other parts of the border of the sampling mesh one tetrahedron of the group is chosen,
+    // even if others are missing.
     return !regular || this->HasOwnerByIndex(group);
   }
 

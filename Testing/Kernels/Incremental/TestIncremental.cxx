@@ -150,8 +150,8 @@ TEST_P(Incremental, LocalEditsRunFewBricks)
   }
   EXPECT_GE(GetNumberOfPoints(second.ChangedExtent), 8 * 8 * 8);
   EXPECT_EQ(second.NumberOfCoveredVoxels, first.NumberOfCoveredVoxels);
-  // A node on the border of the mesh changes what is covered. Neighboring cells may own the samples
-  // that become free.
+  // A node on the boundary of the mesh changes what is covered. Neighboring cells may own the
+  // samples that become free.
   volume.Displacements[3 * volume.GetNode({ { 12, 6, 0 } }) + 2] = 1.5F;
   volume.SendDisplacements(deformer, GetRoute());
   const DeformReport third = deformer.Deform(request);
