@@ -8,7 +8,7 @@
  * and the density of the voxels in it, with equal weights. The elastic filters
  * (vtkElasticDeformation) read these arrays.
  *
- * A voxel on the border of several tetrahedra belongs to one of them. A tetrahedron without voxels
+ * A voxel that several tetrahedra contain belongs to one of them. A tetrahedron without voxels
  * gets the material of the voxel nearest to its centroid, and a tetrahedron outside the volume gets
  * the default material.
  *

@@ -146,7 +146,7 @@ void vtkVolumeEditAlgorithm::ReplaceToolPositions()
 {
   if (this->Edits->Tool.GetNumberOfPositions() > 0)
   {
-    this->Edits->Tool.Replace();
+    this->Edits->Tool.ClearForSameStroke();
     this->Modified();
   }
 }

@@ -138,6 +138,7 @@ PointGhosts FindPointGhosts(vtkDataSet* data, const std::string& owner)
     }
     ghosts.Values = ghosts.Joined.data();
   };
+  // vtkProbeFilter writes a vtkCharArray: read it without conversion to double.
   if (auto* chars = vtkArrayDownCast<vtkAOSDataArrayTemplate<char>>(mask))
   {
     hide(vtk::DataArrayValueRange<1>(chars));

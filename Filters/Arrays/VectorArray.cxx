@@ -219,7 +219,7 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet)
   for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = pointData->GetArray(i);
-    // Colors and normals are no displacements.
+    // Colors and normals are not displacements.
     const bool isOther = array &&
       (array == pointData->GetNormals() || array->GetDataType() == VTK_UNSIGNED_CHAR ||
         (array->GetName() && std::string(array->GetName()) == "Normals"));

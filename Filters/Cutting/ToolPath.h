@@ -28,12 +28,11 @@ public:
   }
   /// Removes all positions. The next ones continue the last stroke if they begin with its
   /// positions.
-  void Replace() { this->Positions.clear(); }
+  void ClearForSameStroke() { this->Positions.clear(); }
   std::size_t GetNumberOfPositions() const { return this->Positions.size(); }
 
-  /// The positions along which the tool has to be moved: from the last position of the previous
-  /// stroke on, or all positions if they do not continue the previous ones. Empty: there are no
-  /// new positions.
+  /// The positions along which the tool has to be moved: from the last finished position on if
+  /// the positions begin with the finished ones, otherwise all. Empty: none is new.
   std::vector<Position> GetStroke() const
   {
     const std::vector<Position>& all = this->Positions;

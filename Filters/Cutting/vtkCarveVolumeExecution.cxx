@@ -162,7 +162,7 @@ vtkDataArray* vtkCarveVolume::vtkInternals::FindLabels(vtkImageData* volume) con
 }
 
 //------------------------------------------------------------------------------
-void vtkCarveVolume::vtkInternals::Find(Body& body, Body::Key&& next,
+void vtkCarveVolume::vtkInternals::AddChange(Body& body, Body::Key&& next,
   const std::function<VolumeEdit()>& carve, std::vector<Change>& changes)
 {
   if (next == body.Carved)
@@ -194,16 +194,16 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
 
   std::vector<Change> changes;
   vtkImplicitFunction* function = this->Self->ImplicitFunction;
-  this->Find(
+  this->AddChange(
     this->Function,
     function ? Body::Key{ { { function, function->GetMTime() } }, { rule } } : Body::Key(),
     [&] { return finder.Carve(MakeImplicitTool(function)); }, changes);
-  this->Find(
+  this->AddChange(
     this->Surface, sheet.IsEmpty() ? Body::Key() : Body::Key{ {}, { rule, sheetVersion } },
     [&] { return finder.CarveSurface(sheet); }, changes);
   const std::size_t beforeLabel = changes.size();
   const deformvolume::LabelReader readLabels = MakeLabelReader(labels);
-  this->Find(
+  this->AddChange(
     this->Label,
     labels
       ? Body::Key{ { { labels, labels->GetMTime() }, deformvolume::GetWrittenStamp(this->Self, 0) },

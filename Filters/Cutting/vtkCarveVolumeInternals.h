@@ -50,8 +50,8 @@ private:
   deformvolume::CarvingRule GetRule() const;
   vtkDataArray* FindLabels(vtkImageData* volume) const;
   /// Appends a change if the key of a body has changed. carve: finds the edit.
-  void Find(Body& body, Body::Key&& next, const std::function<deformvolume::VolumeEdit()>& carve,
-    std::vector<Change>& changes);
+  void AddChange(Body& body, Body::Key&& next,
+    const std::function<deformvolume::VolumeEdit()>& carve, std::vector<Change>& changes);
 
   vtkCarveVolume* Self;
   Body Function;

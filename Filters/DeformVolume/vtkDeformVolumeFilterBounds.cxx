@@ -377,7 +377,7 @@ void vtkDeformVolumeFilter::vtkInternals::AnnounceGrowth()
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::WarnOfCut(vtkInformation* output)
+void vtkDeformVolumeFilter::vtkInternals::WarnOfTooSmallExtent(vtkInformation* output)
 {
   deformvolume::Extent asked;
   output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked.data());

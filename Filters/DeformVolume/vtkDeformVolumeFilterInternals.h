@@ -122,7 +122,7 @@ public:
   void AnnounceGrowth();
   /// Warns if the whole extent has grown in this update, but a consumer still requests the previous
   /// one.
-  void WarnOfCut(vtkInformation* output);
+  void WarnOfTooSmallExtent(vtkInformation* output);
 
   /// Whether a part of the output is requested, and whether the volume can be read in parts for it.
   bool WantsPart(vtkInformation* output) const;
@@ -139,7 +139,7 @@ public:
 
   /// Crops a volume that is larger than its whole extent, with a warning. Returns the cropped
   /// volume, or the volume itself.
-  vtkImageData* CutToWhole(vtkImageData* volume, vtkInformation* info);
+  vtkImageData* CropToWholeExtent(vtkImageData* volume, vtkInformation* info);
 
   /// Calls a function on the ranks that have work. If kernels of a kind are used for the first
   /// time, one rank of each machine goes first and compiles them into the kernel cache for the
@@ -219,7 +219,7 @@ public:
   std::optional<deformvolume::ImageGeometry> Reference;
   /// Makes the filter read an image in memory again that has been modified. Programs write the
   /// values of an image, and call Modified() of the image only.
-  void FollowImage();
+  void ForgetModifiedImage();
   /// The exception that the last request for information has thrown.
   std::exception_ptr InformationFailure;
   /// Whether the extent of the output was too small, so that the next update has to execute the
@@ -271,9 +271,10 @@ private:
 
   deformvolume::InputGeometry ReferenceGeometry;
   vtkTimeStamp ImageRead; // when the volume was read last
-  // The volume that CutToWhole() has cropped, and the stamp of the volume that it was cropped from.
-  vtkSmartPointer<vtkImageData> CutVolume;
-  std::pair<const void*, vtkMTimeType> CutStamp;
+  // The volume that CropToWholeExtent() has cropped, and the stamp of the volume that it was
+  // cropped from.
+  vtkSmartPointer<vtkImageData> CroppedVolume;
+  std::pair<const void*, vtkMTimeType> CroppedStamp;
 
   std::set<std::string> WarnedOf;
   std::string WarnedOfSettings;

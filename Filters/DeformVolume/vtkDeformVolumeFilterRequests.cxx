@@ -316,12 +316,12 @@ int vtkDeformVolumeFilter::RequestData(
     {
       deformvolume::CheckTimes(vtkInternals::ReferencePort, input, outInfo);
       vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
-      this->Internals->FollowImage();
-      volume = this->Internals->CutToWhole(volume, volumeInfo);
+      this->Internals->ForgetModifiedImage();
+      volume = this->Internals->CropToWholeExtent(volume, volumeInfo);
       mapped = this->Internals->GetMappedVolume(volume, volumeInfo);
     });
   const ImageGeometry& geometry = mapped.Whole;
-  this->Internals->WarnOfCut(outInfo);
+  this->Internals->WarnOfTooSmallExtent(outInfo);
   this->Internals->WarnOfReference();
   const DeformationSource source = this->Internals->ReadDeformation(
     ranks, geometry, vtkDataObject::GetData(input[1]), vtkDataObject::GetData(input[2]));

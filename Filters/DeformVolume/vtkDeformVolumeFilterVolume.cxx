@@ -80,7 +80,7 @@ deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::FollowImage()
+void vtkDeformVolumeFilter::vtkInternals::ForgetModifiedImage()
 {
   const std::pair<const void*, vtkMTimeType> now = deformvolume::GetWrittenStamp(this->Self, 0);
   // An image that was modified may share arrays with the last image, and its owner may have written
@@ -96,26 +96,26 @@ void vtkDeformVolumeFilter::vtkInternals::FollowImage()
 }
 
 //------------------------------------------------------------------------------
-vtkImageData* vtkDeformVolumeFilter::vtkInternals::CutToWhole(
+vtkImageData* vtkDeformVolumeFilter::vtkInternals::CropToWholeExtent(
   vtkImageData* volume, vtkInformation* info)
 {
   const Extent whole = deformvolume::GetGeometry(info).PointExtent;
   const Extent given = deformvolume::GetGeometry(volume).PointExtent;
   if (deformvolume::Contains(whole, given) || !deformvolume::Contains(given, whole))
   {
-    this->CutVolume = nullptr;
+    this->CroppedVolume = nullptr;
     return volume;
   }
   const std::pair<const void*, vtkMTimeType> stamp(volume, volume->GetMTime());
-  if (!this->CutVolume || stamp != this->CutStamp ||
-    deformvolume::GetGeometry(this->CutVolume).PointExtent != whole)
+  if (!this->CroppedVolume || stamp != this->CroppedStamp ||
+    deformvolume::GetGeometry(this->CroppedVolume).PointExtent != whole)
   {
     CheckSizes(volume->GetPointData(), volume->GetNumberOfPoints(), "point");
     CheckSizes(volume->GetCellData(), volume->GetNumberOfCells(), "cell");
-    this->CutVolume = vtkSmartPointer<vtkImageData>::New();
-    this->CutVolume->ShallowCopy(volume);
-    this->CutVolume->Crop(whole.data());
-    this->CutStamp = stamp;
+    this->CroppedVolume = vtkSmartPointer<vtkImageData>::New();
+    this->CroppedVolume->ShallowCopy(volume);
+    this->CroppedVolume->Crop(whole.data());
+    this->CroppedStamp = stamp;
     vtkWarningWithObjectMacro(this->Self,
       << "The volume on input port 0 has the extent " << deformvolume::DescribeExtent(given)
       << ", more than the whole extent " << deformvolume::DescribeExtent(whole)
@@ -123,5 +123,5 @@ vtkImageData* vtkDeformVolumeFilter::vtkInternals::CutToWhole(
          "correct "
          "the WHOLE_EXTENT of the source.");
   }
-  return this->CutVolume;
+  return this->CroppedVolume;
 }

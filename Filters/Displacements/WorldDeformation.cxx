@@ -54,12 +54,12 @@ void WorldDeformation::ReadMesh(const DeformationSource& source)
   stamp.insert(stamp.end(), restStamp.begin(), restStamp.end());
   stamp.emplace_back(nullptr, source.Rest ? 1 : 0);
   stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(this->Mesh.GetConnectivityVersion()));
-  if (!this->Field && this->IsCurrent(stamp, source))
+  if (!this->HasField && this->IsCurrent(stamp, source))
   {
     return;
   }
   this->LastStamp.clear();
-  this->Field = false;
+  this->HasField = false;
   const std::size_t nodes = GetNumberOfNodes(shape);
   const DerivedNodes& derived = this->Mesh.GetDerivedNodes();
   this->Displacements.resize(nodes + derived.GetCount());
@@ -97,12 +97,12 @@ void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& s
   const float* floats = FindFloats(array);
   const Stamp stamp{ { image, image->GetMTime() }, { array, array->GetMTime() },
     { floats, static_cast<vtkMTimeType>(array->GetNumberOfValues()) } };
-  if (this->Field && this->IsCurrent(stamp, source))
+  if (this->HasField && this->IsCurrent(stamp, source))
   {
     return;
   }
   this->LastStamp.clear();
-  this->Field = true;
+  this->HasField = true;
   this->Array = array;
   this->Undefined = FindHiddenPoints(image);
   this->Converted.clear();
@@ -119,11 +119,11 @@ void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& s
         }
       }
     });
-  this->Vectors = MakeWorldField(GetGeometry(image));
-  this->Vectors.Floats = floats;
-  this->Vectors.Doubles = this->Converted.data();
-  this->Vectors.Scale = source.DisplacementScale;
-  this->Vectors.Undefined = this->Undefined.empty() ? nullptr : this->Undefined.data();
+  this->Field = MakeWorldField(GetGeometry(image));
+  this->Field.Floats = floats;
+  this->Field.Doubles = this->Converted.data();
+  this->Field.Scale = source.DisplacementScale;
+  this->Field.Undefined = this->Undefined.empty() ? nullptr : this->Undefined.data();
   this->Remember(stamp, source);
 }
 

@@ -30,14 +30,14 @@ public:
   /// cannot be used.
   void Read(const DeformationSource& source);
 
-  bool IsField() const { return this->Field; }
+  bool IsField() const { return this->HasField; }
   /// Changes if one of the results below changes.
   std::uint64_t GetVersion() const { return this->Version; }
   const RestMesh& GetRestMesh() const { return this->Mesh; }
   /// Displacements of the nodes of the mesh.
   const std::vector<glm::dvec3>& GetDisplacements() const { return this->Displacements; }
   /// The field points into this object, and into the array that was read.
-  const WorldField& GetField() const { return this->Vectors; }
+  const WorldField& GetField() const { return this->Field; }
 
 private:
   void ReadMesh(const DeformationSource& source);
@@ -46,11 +46,11 @@ private:
   bool IsCurrent(const Stamp& stamp, const DeformationSource& source) const;
   void Remember(const Stamp& stamp, const DeformationSource& source);
 
-  bool Field = false;
+  bool HasField = false;
   std::uint64_t Version = 0;
   RestMesh Mesh;
   std::vector<glm::dvec3> Displacements;
-  WorldField Vectors;
+  WorldField Field;
   vtkSmartPointer<vtkDataArray> Array; // the vectors of the field
   std::vector<double> Converted; // values of Array, if it is not an array of structs of floats
   std::vector<unsigned char> Undefined;

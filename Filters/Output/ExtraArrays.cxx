@@ -114,7 +114,7 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& whole
   if (!wish.NeedsJacobian() || deformation.IsInverseField())
   {
     this->Jacobians = nullptr;
-    this->OfMesh = VoxelJacobians();
+    this->MeshJacobians = VoxelJacobians();
     this->MappingVersion = 0;
   }
   else
@@ -181,7 +181,7 @@ void ExtraArrays::Compute(const Deformation& deformation, MappingCache& mapping,
       mapping.IsCurrent(deformation.GetMeshAtRest(), volume)))
   {
     mapping.Update(deformation.GetMeshAtRest(), volume, progress);
-    this->OfMesh.SetMapping(volume.Part, volume.Whole.Spacing, mapping.GetMapping(),
+    this->MeshJacobians.SetMapping(volume.Part, volume.Whole.Spacing, mapping.GetMapping(),
       deformation.GetRestPoints(), deformation.GetTetrahedra());
     this->MappingVersion = mapping.GetVersion();
   }
@@ -194,7 +194,7 @@ void ExtraArrays::Compute(const Deformation& deformation, MappingCache& mapping,
   float* jacobians = this->Jacobians->GetPointer(0);
   if (isMesh)
   {
-    this->OfMesh.Compute(toOutput, deformation.GetRestPoints(), deformation.GetTetrahedra(),
+    this->MeshJacobians.Compute(toOutput, deformation.GetRestPoints(), deformation.GetTetrahedra(),
       deformation.GetNodeDisplacements(), jacobians);
   }
   else

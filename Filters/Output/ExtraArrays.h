@@ -87,7 +87,7 @@ private:
   glm::dvec3 PositionsOrigin{ 0.0 }; // see GetPositionsOrigin()
   // One array for each axis: kernels are faster with arrays of one component.
   std::array<vtkSmartPointer<vtkFloatArray>, 3> Positions;
-  VoxelJacobians OfMesh;
+  VoxelJacobians MeshJacobians;
   std::uint64_t MappingVersion = 0;
   vtkSmartPointer<vtkFloatArray>
     Jacobians; // null for inverse fields, or if Jacobians are not needed

@@ -39,7 +39,7 @@ struct MaterialMeans
 };
 
 /// Computes the mean Young modulus, Poisson ratio and density of the voxels in each tetrahedron. A
-/// voxel on the border of several tetrahedra belongs to one of them, as in the static mapping
+/// voxel that several tetrahedra contain belongs to one of them, as in the static mapping
 /// (StaticMappingBuilder). A tetrahedron without voxels has the material of the voxel nearest to
 /// its centroid. The result does not depend on the number of threads.
 ///

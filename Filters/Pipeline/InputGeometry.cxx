@@ -77,7 +77,7 @@ void InputGeometry::CheckRanks(const Ranks& ranks, const std::string& what) cons
   {
     throw Error(what +
       " has different grids on different ranks. Connect a source that announces the same whole "
-      "extent, origin, spacing and direction on all, such as a reader of one .pvti file.");
+      "extent, origin, spacing and direction on all ranks, such as a reader of one .pvti file.");
   }
 }
 
