@@ -161,9 +161,10 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
   catch (const std::exception& error)
   {
     this->Report(error.what());
-    if (internals.Inputs.first)
+    fault = internals.Inputs.first ? internals.Restore(record) : "";
+    if (!fault.empty())
     {
-      internals.Replay(record, [](double) {});
+      this->Report(fault);
     }
   }
   if (wasRunning)

@@ -65,9 +65,10 @@
 #include "vtkObject.h"
 #include "vtkWrappingHints.h" // for VTK_NEWINSTANCE
 
-#include <memory> // for std::unique_ptr
-#include <string> // for std::string
-#include <vector> // for std::vector
+#include <functional> // for std::function
+#include <memory>     // for std::unique_ptr
+#include <string>     // for std::string
+#include <vector>     // for std::vector
 
 class vtkImageData;
 class vtkPolyData;
@@ -326,7 +327,7 @@ private:
   bool CheckInputs();
   bool CheckFinite(const std::vector<double>& numbers);
   bool Enqueue(int kind, const std::vector<double>& numbers = {});
-  bool Save(const std::string& fileName, bool isMesh);
+  bool Save(const std::string& fileName, const char* suffix, const std::function<void()>& write);
 
   double ProbedValue = 0.0;
   double ProbedRestPosition[3] = { 0.0, 0.0, 0.0 };

@@ -112,7 +112,11 @@ bool vtkDeformVolumeSession::LoadSession(const std::string& fileName)
   catch (const std::exception& error) // for example std::bad_alloc
   {
     this->Report("The session " + fileName + " cannot be replayed: " + error.what());
-    internals.Replay(record, [](double) {});
+    const std::string fault = internals.Restore(record);
+    if (!fault.empty())
+    {
+      this->Report(fault);
+    }
     isLoaded = false;
   }
   {
@@ -127,13 +131,13 @@ bool vtkDeformVolumeSession::LoadSession(const std::string& fileName)
   return isLoaded;
 }
 
-bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
+bool vtkDeformVolumeSession::Save(
+  const std::string& fileName, const char* suffix, const std::function<void()>& write)
 {
   if (!this->CheckInputs())
   {
     return false;
   }
-  const char* const suffix = isMesh ? ".vtu" : ".vti";
   if (vtksys::SystemTools::LowerCase(vtksys::SystemTools::GetFilenameLastExtension(fileName)) !=
     suffix)
   {
@@ -143,32 +147,7 @@ bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
   const vtkInternals::Access access(*this->Internals);
   try
   {
-    deformvolume::SessionPipeline& pipeline = this->Internals->Pipeline;
-    if (!isMesh)
-    {
-      WriteData<vtkXMLImageDataWriter>(
-        pipeline.Resample(this->Internals->GetFullSampling()), fileName);
-      return true;
-    }
-    auto* mesh = vtkUnstructuredGrid::SafeDownCast(pipeline.GetDeformation());
-    if (!mesh || pipeline.GetModel() == NONE)
-    {
-      throw std::runtime_error(
-        "The model has no mesh. Choose MASS_SPRING or FINITE_ELEMENTS, or save the volume.");
-    }
-    vtkNew<vtkUnstructuredGrid> deformed;
-    deformed->DeepCopy(mesh);
-    vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
-    for (vtkIdType id = 0; id < deformed->GetNumberOfPoints(); ++id)
-    {
-      double position[3];
-      double by[3];
-      mesh->GetPoint(id, position);
-      vectors->GetTuple(id, by);
-      deformed->GetPoints()->SetPoint(
-        id, position[0] + by[0], position[1] + by[1], position[2] + by[2]);
-    }
-    WriteData<vtkXMLUnstructuredGridWriter>(deformed, fileName);
+    write();
     return true;
   }
   catch (const std::exception& error)
@@ -180,10 +159,38 @@ bool vtkDeformVolumeSession::Save(const std::string& fileName, bool isMesh)
 
 bool vtkDeformVolumeSession::SaveVolume(const std::string& fileName)
 {
-  return this->Save(fileName, false);
+  return this->Save(fileName, ".vti",
+    [&]
+    {
+      WriteData<vtkXMLImageDataWriter>(
+        this->Internals->Pipeline.Resample(this->Internals->GetFullSampling()), fileName);
+    });
 }
 
 bool vtkDeformVolumeSession::SaveMesh(const std::string& fileName)
 {
-  return this->Save(fileName, true);
+  return this->Save(fileName, ".vtu",
+    [&]
+    {
+      deformvolume::SessionPipeline& pipeline = this->Internals->Pipeline;
+      auto* mesh = vtkUnstructuredGrid::SafeDownCast(pipeline.GetDeformation());
+      if (!mesh || pipeline.GetModel() == NONE)
+      {
+        throw std::runtime_error(
+          "The model has no mesh. Choose MASS_SPRING or FINITE_ELEMENTS, or save the volume.");
+      }
+      vtkNew<vtkUnstructuredGrid> deformed;
+      deformed->DeepCopy(mesh);
+      vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+      for (vtkIdType id = 0; id < deformed->GetNumberOfPoints(); ++id)
+      {
+        double position[3];
+        double by[3];
+        mesh->GetPoint(id, position);
+        vectors->GetTuple(id, by);
+        deformed->GetPoints()->SetPoint(
+          id, position[0] + by[0], position[1] + by[1], position[2] + by[2]);
+      }
+      WriteData<vtkXMLUnstructuredGridWriter>(deformed, fileName);
+    });
 }

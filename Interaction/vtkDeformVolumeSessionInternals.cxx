@@ -136,6 +136,21 @@ void vtkDeformVolumeSession::vtkInternals::Begin(vtkImageData* volume, vtkUnstru
   this->IsMoving = false;
 }
 
+std::string vtkDeformVolumeSession::vtkInternals::Restore(const SessionEvents& events)
+{
+  try
+  {
+    this->Replay(events, [](double) {});
+    return "";
+  }
+  catch (const std::exception& error) // for example std::bad_alloc
+  {
+    return std::string(
+             "Call SetInputs() again. The last state of the session cannot be restored: ") +
+      error.what();
+  }
+}
+
 void vtkDeformVolumeSession::vtkInternals::Work()
 {
   for (;;)

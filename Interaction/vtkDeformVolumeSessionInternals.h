@@ -89,6 +89,9 @@ public:
     }
   }
 
+  // Replays the events of the last valid state after a failure. Returns an error message, or "".
+  std::string Restore(const deformvolume::SessionEvents& events);
+
   // The function of the thread.
   void Work();
 
