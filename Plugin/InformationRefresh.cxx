@@ -75,15 +75,16 @@ void ObserveProxy(vtkSMProxy* proxy)
   static vtkNew<vtkCallbackCommand> fetch;
   fetch->SetCallback(Fetch);
   const char* name = proxy && proxy->IsA("vtkSMSourceProxy") ? proxy->GetVTKClassName() : nullptr;
-  const std::string made = name ? name : "";
-  if (made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher")
+  const std::string className = name ? name : "";
+  if (className == "vtkDeformVolumeFilter" || className == "vtkTetGenMesher")
   {
     ResetRemovedProperties(proxy);
   }
-  if ((made == "vtkDeformVolumeFilter" || made == "vtkTetGenMesher" || made == "vtkCutVolume" ||
-        made == "vtkCarveVolume" || made == "vtkChainMailDeformation" ||
-        made == "vtkLatticeTetrahedraSource" || made == "vtkMassSpringDeformation" ||
-        made == "vtkFiniteElementDeformation" || made == "vtkMaterialFromVolume") &&
+  if ((className == "vtkDeformVolumeFilter" || className == "vtkTetGenMesher" ||
+        className == "vtkCutVolume" || className == "vtkCarveVolume" ||
+        className == "vtkChainMailDeformation" || className == "vtkLatticeTetrahedraSource" ||
+        className == "vtkMassSpringDeformation" || className == "vtkFiniteElementDeformation" ||
+        className == "vtkMaterialFromVolume") &&
     !proxy->HasObserver(vtkCommand::UpdateDataEvent, fetch))
   {
     proxy->AddObserver(vtkCommand::UpdateDataEvent, fetch);
@@ -126,7 +127,7 @@ void Connected(vtkObject* module, unsigned long, void*, void* id)
 
 } // namespace
 
-void RefreshInformation()
+void ObserveSessions()
 {
   static vtkNew<vtkCallbackCommand> connected;
   connected->SetCallback(Connected);

@@ -17,7 +17,7 @@ namespace deformvolume
  * Adds the observers to the proxies and views of all present and future sessions of this client.
  * A second call has no effect.
  */
-void RefreshInformation();
+void ObserveSessions();
 
 } // namespace deformvolume
 

@@ -522,7 +522,7 @@ MUTATIONS = {
     "plugin-step": ("Plugin/MassSpringDeformation.xml", 'command="SetTimeStep"', 'command="SetDamping"', [PROPERTIES]),
     "plugin-button": ("Plugin/VolumeEdit.xml", 'command="Redo"', 'command="Undo"', ["ParaView.TestProxies"]),
     "plugin-fetch": ("Plugin/InformationRefresh.cxx", "proxy->UpdatePropertyInformation();", "", [PROPERTIES]),
-    "plugin-classes": ("Plugin/InformationRefresh.cxx", 'made == "vtkCutVolume" ||', "", [PROPERTIES]),
+    "plugin-classes": ("Plugin/InformationRefresh.cxx", 'className == "vtkCutVolume" ||', "", [PROPERTIES]),
     "plugin-servers": ("Plugin/InformationRefresh.cxx",
                        "module->AddObserver(vtkCommand::ConnectionCreatedEvent, connected);", "",
                        ["ParaView.TestClientServer"]),
