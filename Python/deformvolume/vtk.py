@@ -116,7 +116,7 @@ def _cell_types(mesh):
         return mesh.GetCellTypesArray()
 
 
-def _label_arrays(data, masks):
+def _name_arrays(data, masks):
     """Returns pairs of an array and its name in messages: all arrays of point or cell data but these masks."""
     arrays = [data.GetAbstractArray(number) for number in range(data.GetNumberOfArrays())]
     return [
@@ -544,7 +544,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         if image is None:
             raise ValueError("There is no volume on port 0. Set it with SetInputConnection().")
         data = image.GetPointData()
-        arrays = [array for array, _ in _label_arrays(data, _POINT_MASKS) if _is_numeric(array)]
+        arrays = [array for array, _ in _name_arrays(data, _POINT_MASKS) if _is_numeric(array)]
         if not arrays:
             raise ValueError(
                 "The volume on port 0 has no numeric point array. Connect a vtkImageData with point scalars."
@@ -759,14 +759,14 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
         warn(
             "Cell arrays of the volume are not resampled",
-            [label for _, label in _label_arrays(cells, _CELL_MASKS)],
+            [name for _, name in _name_arrays(cells, _CELL_MASKS)],
             " Convert them to point arrays to resample them.",
         )
         warn(
             "These point arrays of the volume are left out, because their types cannot be resampled",
             [
-                f"{label} ({array.GetDataTypeAsString()})"
-                for array, label in _label_arrays(points, _POINT_MASKS)
+                f"{name} ({array.GetDataTypeAsString()})"
+                for array, name in _name_arrays(points, _POINT_MASKS)
                 if not _is_numeric(array)
             ],
         )
