@@ -302,7 +302,7 @@ void DeformVolume(const Options& options, Messages& messages)
   CheckValues(volume.Image, options.Volume);
   CheckBackground(options, volume.Image->GetPointData()->GetScalars());
   volume.Axes =
-    HeedSpace("--volume-space", options.VolumeSpace, options.Volume, volume.Axes, messages);
+    ResolveSpace("--volume-space", options.VolumeSpace, options.Volume, volume.Axes, messages);
   const LabelVolume labels(options, volume, messages);
   Volume reference;
   if (!options.Reference.empty())
@@ -393,7 +393,7 @@ void DeformVolume(const Options& options, Messages& messages)
     result.Forms = reference.Forms;
   }
   const Stopwatch writing;
-  if (labels.AreThere())
+  if (!labels.IsEmpty())
   {
     Volume deformedLabels = result;
     deformedLabels.Image = labels.TakeFrom(result.Image);
@@ -408,7 +408,7 @@ void DeformVolume(const Options& options, Messages& messages)
     WriteVolume(result, output, messages, !options.Quiet);
   }
   if (!options.Outputs.empty() || !options.Jacobians.empty() || !options.InverseFields.empty() ||
-    labels.AreThere())
+    !labels.IsEmpty())
   {
     timings.Add("write volume", writing.GetSeconds());
   }

@@ -342,7 +342,8 @@ void AddDependencies(CLI::App& program)
   needs("--field", { "--field-is-inverse", "--field-space" });
   needs("--tetgen",
     { "--isovalue", "--pieces", "--edge-length", "--radius-edge-ratio", "--tetgen-executable" });
-  needs("--model", { "--pull", "--frames", "--movie" }); // CheckModelOptions() has the others
+  // CheckModelOptions() checks the other options of --model.
+  needs("--model", { "--pull", "--frames", "--movie" });
   needs("--label-volume", { "--label-output" });
   needs("--label-output", { "--label-volume" });
   needs("--points", { "--points-output" });
@@ -489,7 +490,6 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
     "Exit codes: 0 success, 1 failure, 2 wrong usage.\n\n"
     "Example: dent a head to a depth of 15 mm\n"
     "  deform-volume head.nii.gz --tetgen --push 0,88,-50,0,-15,0,30 -o dented.nii.gz");
-  options.RadiusEdgeRatio = 1.414;
   RawOptions raw;
   OptionGroup general(program);
   general.Add("VOLUME", options.Volume, "FILE", std::string("The volume: ") + ReadFormats);

@@ -41,7 +41,7 @@ struct Options
   std::optional<double> Isovalue;
   std::string Pieces = "all";
   double EdgeLength = 0.0;
-  double RadiusEdgeRatio = 0.0;
+  double RadiusEdgeRatio = 1.414;
   std::string TetGenExecutable;
   std::array<int, 3> Lattice{ { 0, 0, 0 } };
   std::vector<Push> Pushes;

@@ -52,7 +52,7 @@ bool IsGrid(vtkDataSet* data)
     vtkRectilinearGrid::SafeDownCast(data);
 }
 
-std::string Count(vtkIdType number, const char* one, const char* many)
+std::string DescribeCount(vtkIdType number, const char* one, const char* many)
 {
   return std::to_string(number) + " " + (number == 1 ? one : many);
 }
@@ -71,7 +71,7 @@ std::string DescribeCells(const std::vector<MeshPart>& parts)
       ++cells.at(static_cast<std::size_t>(dimensions.Get(part.Data->GetCellType(cell))));
     }
   }
-  std::vector<std::string> words{ Count(points, "point", "points") };
+  std::vector<std::string> words{ DescribeCount(points, "point", "points") };
   const std::array<std::array<const char*, 2>, 4> names{ { { { "vertex cell", "vertex cells" } },
     { { "line", "lines" } }, { { "triangle or other face", "triangles or other faces" } },
     { { "three-dimensional cell", "three-dimensional cells" } } } };
@@ -79,7 +79,7 @@ std::string DescribeCells(const std::vector<MeshPart>& parts)
   {
     if (cells[dimension] > 0)
     {
-      words.push_back(Count(cells[dimension], names[dimension][0], names[dimension][1]));
+      words.push_back(DescribeCount(cells[dimension], names[dimension][0], names[dimension][1]));
     }
   }
   if (words.size() == 1)
@@ -116,7 +116,7 @@ std::string DescribeArrays(vtkPointData* arrays)
     // GetArray() returns null for arrays of strings.
     vtkAbstractArray* array = arrays->GetAbstractArray(i);
     text += std::string(text.empty() ? "" : ", ") + "\"" + (name ? name : "") + "\" (" +
-      Count(array->GetNumberOfComponents(), "component", "components") + ")";
+      DescribeCount(array->GetNumberOfComponents(), "component", "components") + ")";
   }
   return text.empty() ? "there are no point arrays" : "there are " + text;
 }
@@ -174,7 +174,7 @@ void CheckArray(const MeshPart& part, const std::string& name, const std::string
   if (array->GetNumberOfComponents() != 3)
   {
     throw Failure(what + "the point array \"" + name + "\" has " +
-      Count(array->GetNumberOfComponents(), "component", "components") +
+      DescribeCount(array->GetNumberOfComponents(), "component", "components") +
       ", but displacements have 3; " + DescribeArrays(part.Data->GetPointData()) +
       GetAdvice(part.Data->GetPointData()));
   }
@@ -198,7 +198,7 @@ void CheckCells(const MeshPart& part, vtkUnstructuredGrid* grid, const std::stri
       {
         throw Failure(MakeBeginning(part, path) + "cell " + std::to_string(cell) + " uses point " +
           std::to_string(point) + ", but there are only " +
-          Count(grid->GetNumberOfPoints(), "point", "points") + ", numbered from 0");
+          DescribeCount(grid->GetNumberOfPoints(), "point", "points") + ", numbered from 0");
       }
     }
   }
@@ -301,10 +301,9 @@ void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::
   if (!deforms)
   {
     throw Failure("cannot use " + path + " as a mesh: it holds " + Describe(mesh) +
-      (hasImages
-          ? ", of blocks of image data, which are ignored. Give an image as a displacement field "
-            "(--field), in a file of its own"
-          : ". A mesh needs three-dimensional cells, such as tetrahedra and hexahedra"));
+      (hasImages ? ", including blocks of image data. Such blocks are ignored. Give an image as a "
+                   "displacement field (--field), in a file of its own"
+                 : ". A mesh needs three-dimensional cells, such as tetrahedra and hexahedra"));
   }
 }
 

@@ -402,7 +402,7 @@ vtkSmartPointer<vtkDataObject> ReadMesh(const std::string& path, const std::stri
   const vtkSmartPointer<vtkDataObject> mesh = ReadMeshFile({ path, "reading mesh", messages,
     !options.Quiet, !displacement.empty() && !options.PointsAreDeformed });
   CheckMesh(mesh, displacement, path);
-  TurnIntoWorld(mesh, { displacement }, options.MeshSpace, path, volume.Axes, messages);
+  ConvertToWorldOfVolume(mesh, { displacement }, options.MeshSpace, path, volume.Axes, messages);
   return mesh;
 }
 
@@ -412,7 +412,7 @@ vtkSmartPointer<vtkPolyData> ReadSheet(
   const vtkSmartPointer<vtkDataObject> sheet =
     ReadSheetFile({ path, "reading sheet", messages, !options.Quiet });
   CheckSheet(sheet, path);
-  TurnIntoWorld(sheet, {}, options.MeshSpace, path, volume.Axes, messages);
+  ConvertToWorldOfVolume(sheet, {}, options.MeshSpace, path, volume.Axes, messages);
   return vtkPolyData::SafeDownCast(sheet);
 }
 

@@ -52,17 +52,17 @@ WorldAxes GetSpace(vtkDataObject* object, const std::string& path, Messages& mes
 }
 
 /// Chooses the world axes of a part. ofFile: the axes that its file states.
-WorldAxes Choose(const std::string& ofOption, const std::string& path, WorldAxes ofFile,
+WorldAxes Choose(const std::string& optionValue, const std::string& path, WorldAxes ofFile,
   WorldAxes ofVolume, Messages& messages)
 {
-  if (ofOption.empty() && ofVolume == WorldAxes::Unknown && ofFile != ofVolume)
+  if (optionValue.empty() && ofVolume == WorldAxes::Unknown && ofFile != ofVolume)
   {
     messages.Warn(path + " is " + (ofFile == WorldAxes::RightAnteriorSuperior ? "ras" : "lps") +
       ". This is not used, because the file of the volume does not state whether its world "
       "coordinates are lps or ras. Give --volume-space.");
     return ofVolume;
   }
-  return ChooseSpace("--mesh-space", ofOption, path, ofFile, ofVolume, messages);
+  return ChooseSpace("--mesh-space", optionValue, path, ofFile, ofVolume, messages);
 }
 
 vtkSmartPointer<vtkDataArray> Negate(vtkDataArray* array, int components)
@@ -83,7 +83,7 @@ vtkSmartPointer<vtkDataArray> Negate(vtkDataArray* array, int components)
 
 }
 
-void ExchangeWorlds(vtkDataSet* data, const std::vector<std::string>& vectors)
+void FlipWorldAxes(vtkDataSet* data, const std::vector<std::string>& vectors)
 {
   // Arrays are copied, because they can be shared with other datasets.
   if (auto* image = vtkImageData::SafeDownCast(data))
@@ -132,10 +132,10 @@ std::string GetSpaceComment(vtkDataObject* object)
   return array ? std::string(SpaceName) + "=" + array->GetValue(0) : std::string();
 }
 
-bool TurnIntoWorld(vtkDataObject* object, const std::vector<std::string>& vectors,
-  const std::string& ofOption, const std::string& path, WorldAxes ofVolume, Messages& messages)
+bool ConvertToWorldOfVolume(vtkDataObject* object, const std::vector<std::string>& vectors,
+  const std::string& optionValue, const std::string& path, WorldAxes ofVolume, Messages& messages)
 {
-  bool isTurned = false;
+  bool isConverted = false;
   const WorldAxes ofAll = GetSpace(object, path, messages);
   // Chooses once for all parts that state the same axes, so that a warning is printed once.
   std::map<WorldAxes, WorldAxes> chosen;
@@ -145,13 +145,13 @@ bool TurnIntoWorld(vtkDataObject* object, const std::vector<std::string>& vector
     ofFile = ofFile != WorldAxes::Unknown ? ofFile : ofAll;
     if (chosen.count(ofFile) == 0)
     {
-      chosen[ofFile] = Choose(ofOption, path, ofFile, ofVolume, messages);
+      chosen[ofFile] = Choose(optionValue, path, ofFile, ofVolume, messages);
     }
     if (chosen[ofFile] != ofVolume)
     {
-      ExchangeWorlds(part.Data, vectors);
-      isTurned = true;
+      FlipWorldAxes(part.Data, vectors);
+      isConverted = true;
     }
   }
-  return isTurned;
+  return isConverted;
 }

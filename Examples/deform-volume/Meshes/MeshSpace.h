@@ -19,15 +19,15 @@ void KeepSpace(vtkDataObject* object, const char* header);
 std::string GetSpaceComment(vtkDataObject* object);
 
 /// Converts a mesh or a sheet of a file to the world coordinates of the volume: the points, and the
-/// point arrays of vectors with the given names; "" is ignored. ofOption: the value of the option
-/// --mesh-space, or "". The field data of the object or of a block take precedence over the option.
-/// Returns whether anything was converted. Throws a Failure if the option is given and the world
-/// axes of the volume are not known.
-bool TurnIntoWorld(vtkDataObject* object, const std::vector<std::string>& vectors,
-  const std::string& ofOption, const std::string& path, WorldAxes ofVolume, Messages& messages);
+/// point arrays of vectors with the given names; "" is ignored. optionValue: the value of the
+/// option --mesh-space, or "". The field data of the object or of a block take precedence over the
+/// option. Returns whether anything was converted. Throws a Failure if the option is given and the
+/// world axes of the volume are not known.
+bool ConvertToWorldOfVolume(vtkDataObject* object, const std::vector<std::string>& vectors,
+  const std::string& optionValue, const std::string& path, WorldAxes ofVolume, Messages& messages);
 
 /// Exchanges right-anterior-superior and left-posterior-superior, in points and in the point arrays
 /// of the given names.
-void ExchangeWorlds(vtkDataSet* data, const std::vector<std::string>& vectors);
+void FlipWorldAxes(vtkDataSet* data, const std::vector<std::string>& vectors);
 
 #endif

@@ -30,7 +30,7 @@
 namespace
 {
 /// The arrays that the filter transforms with the points.
-std::vector<std::string> GetTurnedArrays(vtkPointSet* points)
+std::vector<std::string> GetTransformedArrays(vtkPointSet* points)
 {
   std::vector<std::string> names;
   for (vtkDataArray* array :
@@ -188,7 +188,7 @@ std::vector<PointsFile> ReadPoints(const Options& options, const Volume& volume,
       WarnOfCellArrays(file.Points, path, messages);
     }
     CheckPoints(file.Points, path);
-    file.IsTurned = TurnIntoWorld(file.Points, GetTurnedArrays(file.Points),
+    file.IsConverted = ConvertToWorldOfVolume(file.Points, GetTransformedArrays(file.Points),
       saysSpace ? "" : options.MeshSpace, path, volume.Axes, messages);
     files.push_back(file);
   }
@@ -201,9 +201,9 @@ void WriteDeformedPoints(const std::vector<PointsFile>& files, const Options& op
   for (std::size_t i = 0; i < files.size(); ++i)
   {
     const vtkSmartPointer<vtkPointSet> moved = Deform(files[i], options, deformation, messages);
-    if (files[i].IsTurned)
+    if (files[i].IsConverted)
     {
-      ExchangeWorlds(moved, GetTurnedArrays(moved));
+      FlipWorldAxes(moved, GetTransformedArrays(moved));
     }
     OutputFile output(options.PointsOutputs[i]);
     output.Finish(messages, WritePoints(files[i], moved, output.GetPath()));

@@ -22,7 +22,7 @@ struct PointsFile
   /// In the world coordinates of the volume, with the cells and arrays of the file.
   vtkSmartPointer<vtkPointSet> Points;
   /// Whether the points were converted from other world coordinates.
-  bool IsTurned = false;
+  bool IsConverted = false;
   /// The text of a .csv or .mrk.json file.
   LandmarkFile Landmarks;
 };

@@ -115,10 +115,10 @@ void SetAxes(vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, M
     const bool hasSize = spacing[column] > 0.0 && std::isfinite(spacing[column]);
     if (!hasSize || !std::isfinite(axes->GetElement(column, 3)))
     {
-      throw Failure(MakeText("cannot read ", path, ": by its header ",
-        hasSize ? "the position of its first voxel on axis "
-                : "the distance between its voxels on axis ",
-        column, " is ", hasSize ? axes->GetElement(column, 3) : spacing[column], advice));
+      throw Failure(MakeText("cannot read ", path, ": its header gives the ",
+        hasSize ? "position " : "voxel spacing ",
+        hasSize ? axes->GetElement(column, 3) : spacing[column],
+        hasSize ? " of the first voxel on axis " : " on axis ", column, advice));
     }
   }
   double origin[3] = { axes->GetElement(0, 3), axes->GetElement(1, 3), axes->GetElement(2, 3) };

@@ -76,10 +76,10 @@ int GetType(itk::ImageIOBase* io)
   return VTK_VOID;
 }
 
-// Reads all values. Returns true if the last value is missing, because the file is truncated or
+// Reads all values. Returns false if the last value is missing, because the file is truncated or
 // damaged. To find that out, fills the last value with a mark and reads the file, twice with
 // different marks. A byte that keeps both marks was not read.
-bool LacksLastValue(itk::ImageIOBase* io, vtkDataArray* values)
+bool ReadCompletely(itk::ImageIOBase* io, vtkDataArray* values)
 {
   const auto size = static_cast<std::size_t>(values->GetDataTypeSize());
   auto* const bytes = static_cast<unsigned char*>(values->GetVoidPointer(0));
@@ -96,10 +96,10 @@ bool LacksLastValue(itk::ImageIOBase* io, vtkDataArray* values)
     }
     if (std::find(isKept.begin(), isKept.end(), true) == isKept.end())
     {
-      return false;
+      return true;
     }
   }
-  return true;
+  return false;
 }
 }
 
@@ -131,7 +131,7 @@ void ReadHeader(itk::ImageIOBase* io, const std::string& path, const std::string
   }
   if (!hasVoxels)
   {
-    throw Failure(what + "by its header it holds no voxels, or has an impossible size");
+    throw Failure(what + "its header gives no voxels, or an impossible size");
   }
 }
 
@@ -152,7 +152,7 @@ vtkSmartPointer<vtkDataArray> ReadValues(itk::ImageIOBase* io, std::string& comp
   bool isRead = false;
   try
   {
-    isRead = !LacksLastValue(io, values);
+    isRead = ReadCompletely(io, values);
   }
   catch (const std::exception&)
   {
@@ -192,7 +192,7 @@ std::string WriteValues(itk::ImageIOBase* io, const void* values)
   {
     return GetReason(error);
   }
-  // MetaImage files that are not complete are no error of ITK.
+  // ITK throws no exception for an incomplete MetaImage file. It only writes to std::cerr.
   return errors.GetText().empty() ? ""
                                   : "its values are not complete. Is there enough free disk space?";
 }

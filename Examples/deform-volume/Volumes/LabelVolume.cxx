@@ -185,7 +185,7 @@ LabelVolume::LabelVolume(const Options& options, const Volume& volume, Messages&
     throw Failure("cannot use the labels " + path + ": its voxels have no numeric array");
   }
   vtkDataArray* scalars = arrays->GetScalars();
-  this->Scalars =
+  this->ActiveName =
     scalars && scalars->GetName() && std::count(names.begin(), names.end(), scalars->GetName()) > 0
     ? scalars->GetName()
     : names.front();
@@ -203,7 +203,7 @@ LabelVolume::LabelVolume(const Options& options, const Volume& volume, Messages&
 vtkSmartPointer<vtkImageData> LabelVolume::AddTo(
   vtkImageData* volume, vtkDeformVolumeFilter* filter) const
 {
-  if (!this->AreThere())
+  if (this->IsEmpty())
   {
     return volume;
   }
@@ -234,7 +234,7 @@ vtkSmartPointer<vtkImageData> LabelVolume::TakeFrom(vtkSmartPointer<vtkImageData
     labels->GetPointData()->AddArray(values);
     others->GetPointData()->RemoveArray(name.c_str());
   }
-  labels->GetPointData()->SetActiveScalars(this->Scalars.c_str());
+  labels->GetPointData()->SetActiveScalars(this->ActiveName.c_str());
   deformed = others;
   return labels;
 }

@@ -20,7 +20,8 @@ public:
   /// integers, are not on the grid of the volume, or cannot be written in the format of an output.
   LabelVolume(const Options& options, const Volume& volume, Messages& messages);
 
-  bool AreThere() const { return !this->Arrays.empty(); }
+  /// Whether there are no labels.
+  bool IsEmpty() const { return this->Arrays.empty(); }
 
   /// Returns a copy of the volume with the labels, which become categorical arrays of the filter;
   /// the volume itself if there are no labels.
@@ -41,7 +42,7 @@ private:
     std::string Name;
   };
   std::vector<LabelArray> Arrays;
-  std::string Scalars;
+  std::string ActiveName; ///< the array that becomes the scalars of TakeFrom()
 };
 
 #endif

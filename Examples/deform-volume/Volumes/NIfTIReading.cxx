@@ -68,8 +68,8 @@ void CheckType(const std::string& path)
   }
   // The header begins with its size: 348 or 540, in four bytes.
   const bool isBigEndian = bytes[0] == 0;
-  const bool isSecond = bytes[isBigEndian ? 3 : 0] == 540 % 256;
-  const unsigned char* const place = bytes + (isSecond ? 12 : 70);
+  const bool isVersion2 = bytes[isBigEndian ? 3 : 0] == 540 % 256;
+  const unsigned char* const place = bytes + (isVersion2 ? 12 : 70); // offset of the field datatype
   using Header = vtkNIFTIImageHeader;
   const int types[] = { Header::TypeUInt8, Header::TypeInt8, Header::TypeUInt16, Header::TypeInt16,
     Header::TypeUInt32, Header::TypeInt32, Header::TypeUInt64, Header::TypeInt64,
@@ -111,8 +111,8 @@ void CheckHeader(vtkNIFTIImageHeader* header, const std::string& path)
   if (header->GetVoxOffset() < headerSize)
   {
     Fail(path,
-      "by its header its voxels begin at byte " + std::to_string(header->GetVoxOffset()) +
-        ", within the header");
+      "its header gives the byte " + std::to_string(header->GetVoxOffset()) +
+        ", within the header, as the begin of the voxels");
   }
   // A slope of NaN is allowed: nibabel and SPM do not rescale then.
   if (std::isinf(header->GetSclSlope()) ||
@@ -132,8 +132,8 @@ void CheckHeader(vtkNIFTIImageHeader* header, const std::string& path)
     if (!(header->GetPixDim(axis) > 0.0))
     {
       Fail(path,
-        "by its header the distance between its voxels on axis " + std::to_string(axis - 1) +
-          " is " + std::to_string(header->GetPixDim(axis)));
+        "its header gives the voxel spacing " + std::to_string(header->GetPixDim(axis)) +
+          " on axis " + std::to_string(axis - 1));
     }
   }
 }
@@ -143,7 +143,8 @@ bool IsInteger(vtkDataArray* array)
   return array->GetDataType() != VTK_FLOAT && array->GetDataType() != VTK_DOUBLE;
 }
 
-// The type for stored * slope + intercept: an integer type if all three are integers.
+// The type for stored * slope + intercept: an integer type if all three are integers and VTK_INT or
+// the stored type can hold the range, otherwise a floating-point type.
 int ChooseType(vtkDataArray* stored, double slope, double intercept)
 {
   const int type = stored->GetDataType();
@@ -214,6 +215,7 @@ void ScalePlace(vtkMatrix4x4* form, double factor)
   }
 }
 
+// Sets spacing, axes, forms and world axes of the volume.
 void Place(Volume& volume, vtkNIFTIImageReader* reader, const std::string& path, double millimetres,
   Messages& messages)
 {
@@ -224,7 +226,8 @@ void Place(Volume& volume, vtkNIFTIImageReader* reader, const std::string& path,
     length *= millimetres;
   }
   volume.Image->SetSpacing(std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]));
-  // The forms of the reader are those of the slices in its order.
+  // The matrices of the reader refer to the slices in its order, which is reversed if QFac is
+  // negative.
   const bool isReversed = reader->GetQFac() < 0.0;
   const int steps = volume.Image->GetDimensions()[2] - 1;
   vtkMatrix4x4* const sform = reader->GetSFormMatrix();

@@ -166,7 +166,8 @@ Volume ReadVolume(
   }
   catch (const std::bad_alloc&)
   {
-    throw Failure("cannot read " + path + ": by its header it needs more memory than is available");
+    throw Failure(
+      "cannot read " + path + ": its header gives a size that needs more memory than is available");
   }
   int dimensions[3];
   volume.Image->GetDimensions(dimensions);

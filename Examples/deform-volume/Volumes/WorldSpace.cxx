@@ -4,33 +4,33 @@
 #include "Failure.h"
 #include "Messages.h"
 
-WorldAxes HeedSpace(const std::string& option, const std::string& ofOption, const std::string& path,
-  WorldAxes ofFile, Messages& messages)
+WorldAxes ResolveSpace(const std::string& optionName, const std::string& optionValue,
+  const std::string& path, WorldAxes ofFile, Messages& messages)
 {
-  if (ofOption.empty())
+  if (optionValue.empty())
   {
     return ofFile;
   }
   const WorldAxes axes =
-    ofOption == "ras" ? WorldAxes::RightAnteriorSuperior : WorldAxes::LeftPosteriorSuperior;
+    optionValue == "ras" ? WorldAxes::RightAnteriorSuperior : WorldAxes::LeftPosteriorSuperior;
   if (ofFile != WorldAxes::Unknown && ofFile != axes)
   {
-    messages.Warn(option + " " + ofOption + " is not used: " + path + " states that it is " +
-      (ofOption == "ras" ? "lps." : "ras."));
+    messages.Warn(optionName + " " + optionValue + " is not used: " + path + " states that it is " +
+      (optionValue == "ras" ? "lps." : "ras."));
     return ofFile;
   }
   return axes;
 }
 
-WorldAxes ChooseSpace(const std::string& option, const std::string& ofOption,
+WorldAxes ChooseSpace(const std::string& optionName, const std::string& optionValue,
   const std::string& path, WorldAxes ofFile, WorldAxes ofVolume, Messages& messages)
 {
-  if (!ofOption.empty() && ofVolume == WorldAxes::Unknown)
+  if (!optionValue.empty() && ofVolume == WorldAxes::Unknown)
   {
-    throw Failure(option + " " + ofOption +
+    throw Failure(optionName + " " + optionValue +
       ": the file of the volume does not state whether its world coordinates are lps or ras, so " +
       path + " cannot be converted to them. Give --volume-space");
   }
-  const WorldAxes axes = HeedSpace(option, ofOption, path, ofFile, messages);
+  const WorldAxes axes = ResolveSpace(optionName, optionValue, path, ofFile, messages);
   return axes != WorldAxes::Unknown ? axes : ofVolume;
 }
