@@ -103,7 +103,7 @@ glm::dvec3 GetWorldVector(const glm::dvec3& vector, vtkImageData* volume)
   return world;
 }
 
-glm::dvec3 RoundToGrain(const glm::dvec3& vector)
+glm::dvec3 RoundToSteps(const glm::dvec3& vector)
 {
   glm::dvec3 rounded;
   for (int axis = 0; axis < 3; ++axis)
@@ -118,7 +118,7 @@ void SetVector(vtkDataArray* vectors, vtkIdType point, const glm::dvec3& inVoxel
   vtkImageData* volume, Geometry geometry)
 {
   const glm::dvec3 world =
-    GetWorldVector(geometry == Geometry::Exact ? RoundToGrain(inVoxels) : inVoxels, volume);
+    GetWorldVector(geometry == Geometry::Exact ? RoundToSteps(inVoxels) : inVoxels, volume);
   vectors->SetTuple(point, &world.x);
 }
 

@@ -61,24 +61,32 @@ TEST(CutDeformedVolume, Deformed)
   auto deformedMesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
   deformedMesh->DeepCopy(restMesh);
   MovePoints(deformedMesh, Shift(move.x, move.y, move.z));
-  for (int kind = 0; kind < 3; ++kind)
+  enum Deformation
+  {
+    ByDisplacements,
+    ByDeformedMesh,
+    ByField
+  };
+  for (const Deformation deformation : { ByDisplacements, ByDeformedMesh, ByField })
   {
     Edited<vtkCutVolume> cut;
     cut.Filter->SetInputData(volume);
-    cut.Filter->SetDeformationData(kind == 0 ? mesh.Get()
-        : kind == 1                          ? deformedMesh.Get()
-                                             : nullptr);
-    if (kind == 1)
+    if (deformation == ByDisplacements)
     {
+      cut.Filter->SetDeformationData(mesh);
+    }
+    else if (deformation == ByDeformedMesh)
+    {
+      cut.Filter->SetDeformationData(deformedMesh);
       cut.Filter->SetRestData(restMesh);
     }
-    if (kind == 2)
+    else
     {
       cut.Filter->SetDeformationData(field);
     }
     cut.Filter->SetSheetData(MakePlaneX(volume, 5.5));
     EXPECT_EQ(cut.CopyMask(), expected);
-    if (kind == 0)
+    if (deformation == ByDisplacements)
     {
       // The deformation changes: the cut stays in the tissue. A new sheet cuts the volume in its
       // new position.
@@ -91,7 +99,7 @@ TEST(CutDeformedVolume, Deformed)
 }
 
 // Cuts of a part of a volume are equal to those of the whole volume: at rest, and deformed by
-// links, by runs and by a field.
+// runs, by links and by a field.
 TEST(CutDeformedVolume, Parts)
 {
   vtkNew<vtkRTAnalyticSource> source;
@@ -106,14 +114,21 @@ TEST(CutDeformedVolume, Parts)
     MakeSheet(volume, { glm::dvec3(-30, 2, 9), glm::dvec3(52, -21, 13), glm::dvec3(5, 62, -14) });
   const std::vector<Extent> parts{ { { -12, 19, 3, 30, -5, 22 } }, { { -12, 4, 3, 30, -5, 22 } },
     { { 3, 19, 7, 20, 0, 9 } }, { { -1, 2, 3, 30, -5, 3 } } };
-  for (int kind = 0; kind < 4; ++kind)
+  enum Deformation
   {
-    auto mesh = MakeMesh(volume, kind == 1 ? 3 : 25, -1.3);
+    AtRest,
+    ByRuns,
+    ByLinks,
+    ByField
+  };
+  for (const Deformation deformation : { AtRest, ByRuns, ByLinks, ByField })
+  {
+    auto mesh = MakeMesh(volume, deformation == ByRuns ? 3 : 25, -1.3);
     SetDisplacements(mesh, bend);
     for (const int outside :
       { vtkCutVolume::DISCARD, vtkCutVolume::EXTRAPOLATE, vtkCutVolume::KEEP })
     {
-      if (kind == 3 && outside == vtkCutVolume::KEEP)
+      if (deformation == ByField && outside == vtkCutVolume::KEEP)
       {
         continue; // KEEP needs a mesh
       }
@@ -128,10 +143,10 @@ TEST(CutDeformedVolume, Parts)
         cut->SetSheetData(sheet);
         cut->SetOutsideMode(outside);
         cut->SetFadeDistance(4.0);
-        if (kind > 0)
+        if (deformation != AtRest)
         {
           cut->SetDeformationData(
-            kind == 3 ? static_cast<vtkDataObject*>(field.Get()) : mesh.Get());
+            deformation == ByField ? static_cast<vtkDataObject*>(field.Get()) : mesh.Get());
         }
         cut->UpdateExtent(part.data());
         EXPECT_GT(cut->GetNumberOfSwitchedOffTetrahedra(), 0);

@@ -34,7 +34,6 @@ public:
   /// Finds the links of the active tetrahedra.
   void FindLinks();
   const std::vector<ReferenceLink>& GetLinks() const { return this->Links; }
-  bool IsElement(std::size_t voxel) const { return this->Elements[voxel]; }
   std::size_t GetNumberOfVoxels() const { return this->Materials.size(); }
   std::size_t GetVoxel(int i, int j, int k) const;
 

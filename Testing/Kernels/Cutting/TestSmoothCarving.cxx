@@ -43,7 +43,7 @@ CarvingTool MakeTool(const Function& function, bool withDistance)
   return tool;
 }
 
-glm::dvec3 GetPlace(std::int64_t vertex)
+glm::dvec3 GetPoint(std::int64_t vertex)
 {
   const std::int64_t x = GetSize(Volume, 0);
   const std::int64_t y = GetSize(Volume, 1);
@@ -66,12 +66,12 @@ std::vector<float> Spread(const DistanceSet& set)
 bool IsNearBoundary(std::int64_t vertex, const std::vector<bool>& inside)
 {
   const std::int64_t size[3] = { GetSize(Volume, 0), GetSize(Volume, 1), GetSize(Volume, 2) };
-  const std::int64_t place[3] = { vertex % size[0], vertex / size[0] % size[1],
+  const std::int64_t index[3] = { vertex % size[0], vertex / size[0] % size[1],
     vertex / (size[0] * size[1]) };
   for (int c = 0; c < 8; ++c)
   {
-    const std::int64_t first[3] = { place[0] - (c & 1), place[1] - (c >> 1 & 1),
-      place[2] - (c >> 2) };
+    const std::int64_t first[3] = { index[0] - (c & 1), index[1] - (c >> 1 & 1),
+      index[2] - (c >> 2) };
     bool isCell = true;
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -101,12 +101,12 @@ void Check(const Function& function, bool withDistance)
   std::vector<bool> inside;
   for (std::int64_t v = 0; v < GetNumberOfPoints(Volume); ++v)
   {
-    inside.push_back(function(GetPlace(v)) < 0.0);
+    inside.push_back(function(GetPoint(v)) < 0.0);
   }
   for (std::int64_t v = 0; v < GetNumberOfPoints(Volume); ++v)
   {
     const auto i = static_cast<std::size_t>(v);
-    const double value = (withDistance ? 2.0 : 1.0) * std::abs(function(GetPlace(v)));
+    const double value = (withDistance ? 2.0 : 1.0) * std::abs(function(GetPoint(v)));
     float expected = inside[i] ? -Far : Far;
     if (IsNearBoundary(v, inside))
     {
