@@ -159,10 +159,17 @@ public:
   /// Sums the counters over all ranks. Collective.
   void AddUpCounts(const deformvolume::Ranks& ranks);
 
-  /// Warns of inputs that are ignored or dubious, if they were not in the last call. others:
-  /// further warnings, which may be empty.
+  /// Keeps the arrays of the output for incremental updates, unless they are to be released.
+  void KeepOutputs(const deformvolume::DeformReport& report, vtkInformation* output);
+
+  /// Selects the arrays to resample, and warns of inputs that are ignored. Returns the image whose
+  /// masks are used: the coarse volume, or the volume itself.
+  vtkImageData* ReadArrays(vtkImageData* volume, const deformvolume::MappedVolume& mapped,
+    const deformvolume::DeformationSource& source, std::vector<deformvolume::SourceArray>& arrays);
+  /// Warns of inputs that are ignored or dubious, if they were not in the last call. leftOut: names
+  /// of arrays whose types cannot be resampled.
   void WarnOfInputs(vtkImageData* volume, const std::vector<std::string>& leftOut,
-    const std::vector<std::string>& others);
+    const deformvolume::MappedVolume& mapped, const deformvolume::DeformationSource& source);
 
   /// The requested arrays besides those of the volume.
   deformvolume::ExtraArraysWish GetExtraArrays() const

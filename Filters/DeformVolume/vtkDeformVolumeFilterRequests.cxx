@@ -26,9 +26,7 @@
 #include "vtkLogger.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
@@ -40,19 +38,6 @@ using deformvolume::DeformationSource;
 using deformvolume::Error;
 using deformvolume::Extent;
 using deformvolume::ImageGeometry;
-
-namespace
-{
-
-// Whether a part of a mesh has points in single precision.
-bool HasFloats(const deformvolume::MeshParts& parts)
-{
-  return std::any_of(parts.begin(), parts.end(),
-    [](vtkUnstructuredGrid* part)
-    { return part->GetPoints() && part->GetPoints()->GetDataType() == VTK_FLOAT; });
-}
-
-} // namespace
 
 //------------------------------------------------------------------------------
 vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
@@ -295,7 +280,7 @@ int vtkDeformVolumeFilter::RequestData(
   vtkImageData* image = vtkImageData::GetData(outInfo);
   // If this execution fails, no results of an earlier one may remain.
   image->Initialize();
-  const bool hasLast = this->Internals->FactorOfOutput == this->SamplingFactor;
+  const bool hasComparableOutput = this->Internals->FactorOfOutput == this->SamplingFactor;
   this->Internals->FactorOfOutput = 0;
   this->Internals->Report = {};
   this->Internals->StaticMappingTime = 0.0;
@@ -328,44 +313,10 @@ int vtkDeformVolumeFilter::RequestData(
   deformvolume::Deformation& deformation = state.Deformation;
   this->Internals->KeepInBounds(ranks, geometry, source, outInfo);
 
-  // The image whose masks are used: of the coarse volume, or the volume itself.
-  vtkImageData* worked = nullptr;
+  vtkImageData* maskedVolume = nullptr;
   std::vector<deformvolume::SourceArray> arrays;
   ranks.Attempt(
-    [&]
-    {
-      std::vector<std::string> leftOut;
-      arrays = deformvolume::SelectArrays(volume, this->Internals->CategoricalArrays, leftOut);
-      for (deformvolume::SourceArray& array : arrays)
-      {
-        array.Categorical |= this->Interpolation == NEAREST_INTERPOLATION;
-      }
-      auto* const field = vtkImageData::SafeDownCast(source.Shape);
-      std::vector<std::string> warnings;
-      if (!mapped.Outside.AreExtrapolated())
-      {
-        warnings.push_back(field
-            ? deformvolume::DescribeSmallness(deformvolume::GetGeometry(field), geometry)
-            : deformvolume::DescribeSmallness(deformation.GetMeshAtRest(), geometry));
-      }
-      if (!mapped.Outside.AreExtrapolated() && HasFloats(source.GetRestParts()))
-      {
-        warnings.push_back(deformvolume::DescribeRounding(deformation.GetMeshAtRest(), geometry));
-      }
-      warnings.push_back(deformvolume::DescribeIgnored(source.ShapeParts));
-      this->Internals->WarnOfInputs(volume, leftOut, warnings);
-      this->Internals->ReleaseOldVolumes(arrays);
-      worked = state.Volume.Update(volume, this->SamplingFactor, arrays);
-      state.Extra.Select(
-        this->Internals->GetExtraArrays(), mapped.Whole, mapped.Part, deformation, arrays);
-      this->Internals->HadCut = deformvolume::HasCut(worked);
-      if (this->Internals->HadCut && !mapped.IsWhole())
-      {
-        throw Error("The source of the volume was asked for a part of it, but the smooth cut (the "
-                    "array \"CutTetrahedra\") needs the whole volume. Update again: from the next "
-                    "update on, the whole volume is requested.");
-      }
-    });
+    [&] { maskedVolume = this->Internals->ReadArrays(volume, mapped, source, arrays); });
 
   deformvolume::DeformRequest request;
   outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), request.OutputExtent.data());
@@ -397,7 +348,7 @@ int vtkDeformVolumeFilter::RequestData(
           isMapped ? state.Mapping.GetRunBytes(deformation.GetMeshAtRest(), mapped) : 0, method);
       });
   };
-  std::string form = "field";
+  std::string kernelForm = "field";
   const bool isPart = ranks.IsAny(this->Internals->WantsPart(outInfo));
   ranks.Attempt(
     [&]
@@ -411,7 +362,7 @@ int vtkDeformVolumeFilter::RequestData(
       // The resampler is chosen by the memory that the whole output needs, so that all parts of the
       // output have the same one. A volume that can be read in parts does not have to fit, even if
       // this part of the output needs all of it.
-      request.Method = this->Internals->ChooseResampler(worked,
+      request.Method = this->Internals->ChooseResampler(maskedVolume,
         [&](deformvolume::Resampling method)
         {
           if (!isPart || !this->Internals->CanTakePart(input[0]->GetInformationObject(0)))
@@ -421,10 +372,10 @@ int vtkDeformVolumeFilter::RequestData(
         });
       if (!deformation.IsField() && request.Method != deformvolume::Resampling::MeshRasterization)
       {
-        form =
+        kernelForm =
           state.Mapping.GetRunBytes(deformation.GetMeshAtRest(), mapped) > 0 ? "runs" : "links";
       }
-      form += deformvolume::HasCut(worked) ? " cut" : "";
+      kernelForm += deformvolume::HasCut(maskedVolume) ? " cut" : "";
     });
   if (ranks.IsAny(request.Method == deformvolume::Resampling::MeshRasterization))
   {
@@ -438,8 +389,8 @@ int vtkDeformVolumeFilter::RequestData(
     checkMemory(request.OutputExtent, request.Method);
     state.Extra.Compute(
       deformation, state.Mapping, mapped, source.ToOutput, this->Internals->GetProgress(0.0, 0.3));
-    device.SetVolume(voxelGrid, worked, arrays, this->BackgroundValue, deformation, mapped.Outside,
-      request.Method);
+    device.SetVolume(voxelGrid, maskedVolume, arrays, this->BackgroundValue, deformation,
+      mapped.Outside, request.Method);
     if (request.Method == deformvolume::Resampling::MeshRasterization)
     {
       if (!deformation.IsField())
@@ -477,12 +428,12 @@ int vtkDeformVolumeFilter::RequestData(
     loss = state.Extra.Finish(deformation, mapped.Outside, this->BackgroundValue, image);
   };
   this->Internals->RunInTurn(ranks,
-    deformvolume::GetKernelKey(this->DeviceInUse, request, form, described), numberOfPoints > 0,
-    deform);
+    deformvolume::GetKernelKey(this->DeviceInUse, request, kernelForm, described),
+    numberOfPoints > 0, deform);
   if (numberOfPoints > 0)
   {
     this->Internals->TakeReport(report, request.Method);
-    this->Internals->WarnOfSplits(worked);
+    this->Internals->WarnOfSplits(maskedVolume);
     this->Internals->WarnOfFading(mapped, whole);
     this->Internals->WarnOfLoss(loss);
   }
@@ -492,21 +443,10 @@ int vtkDeformVolumeFilter::RequestData(
   {
     return 1;
   }
-  if (vtkDataObject::GetGlobalReleaseDataFlag() != 0 ||
-    outInfo->Get(vtkDemandDrivenPipeline::RELEASE_DATA()) != 0)
-  {
-    for (auto& other : this->Internals->States)
-    {
-      other.second.Outputs.Forget();
-    }
-  }
-  else
-  {
-    state.Outputs.Keep(report);
-  }
+  this->Internals->KeepOutputs(report, outInfo);
   vtkVLogF(
     vtkLogger::VERBOSITY_TRACE, "%s:\n%s", vtkLogIdentifier(this), this->GetSummary().c_str());
-  if (!hasLast)
+  if (!hasComparableOutput)
   {
     std::copy(request.OutputExtent.begin(), request.OutputExtent.end(), this->ChangedExtent);
   }

@@ -3,14 +3,19 @@
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "InputUpdate.h"
+#include "MaskArray.h"
 #include "PipelineGeometry.h"
+#include "VolumeArrays.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellData.h"
+#include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleVectorKey.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -124,4 +129,47 @@ vtkImageData* vtkDeformVolumeFilter::vtkInternals::CropToWholeExtent(
          "the WHOLE_EXTENT of the source.");
   }
   return this->CroppedVolume;
+}
+
+//------------------------------------------------------------------------------
+vtkImageData* vtkDeformVolumeFilter::vtkInternals::ReadArrays(vtkImageData* volume,
+  const deformvolume::MappedVolume& mapped, const deformvolume::DeformationSource& source,
+  std::vector<deformvolume::SourceArray>& arrays)
+{
+  deformvolume::ExecutionState& state = *this->State;
+  std::vector<std::string> leftOut;
+  arrays = deformvolume::SelectArrays(volume, this->CategoricalArrays, leftOut);
+  for (deformvolume::SourceArray& array : arrays)
+  {
+    array.Categorical |= this->Self->Interpolation == NEAREST_INTERPOLATION;
+  }
+  this->WarnOfInputs(volume, leftOut, mapped, source);
+  this->ReleaseOldVolumes(arrays);
+  vtkImageData* const maskedVolume =
+    state.Volume.Update(volume, this->Self->SamplingFactor, arrays);
+  state.Extra.Select(this->GetExtraArrays(), mapped.Whole, mapped.Part, state.Deformation, arrays);
+  this->HadCut = deformvolume::HasCut(maskedVolume);
+  if (this->HadCut && !mapped.IsWhole())
+  {
+    throw Error("The source of the volume was asked for a part of it, but the smooth cut (the "
+                "array \"CutTetrahedra\") needs the whole volume. Update again: from the next "
+                "update on, the whole volume is requested.");
+  }
+  return maskedVolume;
+}
+
+//------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::KeepOutputs(
+  const deformvolume::DeformReport& report, vtkInformation* output)
+{
+  if (vtkDataObject::GetGlobalReleaseDataFlag() == 0 &&
+    output->Get(vtkDemandDrivenPipeline::RELEASE_DATA()) == 0)
+  {
+    this->State->Outputs.Keep(report);
+    return;
+  }
+  for (auto& state : this->States)
+  {
+    state.second.Outputs.Forget();
+  }
 }

@@ -2,18 +2,24 @@
 // Warnings of vtkDeformVolumeFilter after an update.
 #include "vtkDeformVolumeFilterInternals.h"
 
+#include "Deformation.h"
+#include "DeformationMesh.h"
 #include "Densities.h"
 #include "Fading.h"
 #include "IndexBounds.h"
 #include "MaskArray.h"
 #include "NewWarnings.h"
+#include "PipelineGeometry.h"
 #include "VolumeArrays.h"
+#include "WorldBoxes.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <glm/common.hpp>
 
@@ -23,10 +29,25 @@
 #include <utility>
 #include <vector>
 
+namespace
+{
+
+// Whether a part of a mesh has points in single precision.
+bool HasFloats(const deformvolume::MeshParts& parts)
+{
+  return std::any_of(parts.begin(), parts.end(),
+    [](vtkUnstructuredGrid* part)
+    { return part->GetPoints() && part->GetPoints()->GetDataType() == VTK_FLOAT; });
+}
+
+} // namespace
+
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::WarnOfInputs(vtkImageData* volume,
-  const std::vector<std::string>& leftOut, const std::vector<std::string>& others)
+  const std::vector<std::string>& leftOut, const deformvolume::MappedVolume& mapped,
+  const deformvolume::DeformationSource& source)
 {
+  const deformvolume::Deformation& deformation = this->State->Deformation;
   const auto list = [](const std::vector<std::string>& names)
   {
     std::string text;
@@ -60,13 +81,19 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfInputs(vtkImageData* volume,
       ". Labels in other arrays are interpolated like intensities. Correct the names with "
       "AddCategoricalArray() and RemoveCategoricalArray().");
   }
-  for (const std::string& warning : others)
+  if (!mapped.Outside.AreExtrapolated())
   {
-    if (!warning.empty())
+    auto* const field = vtkImageData::SafeDownCast(source.Shape);
+    warnings.insert(field
+        ? deformvolume::DescribeSmallness(deformvolume::GetGeometry(field), mapped.Whole)
+        : deformvolume::DescribeSmallness(deformation.GetMeshAtRest(), mapped.Whole));
+    if (HasFloats(source.GetRestParts()))
     {
-      warnings.insert(warning);
+      warnings.insert(deformvolume::DescribeRounding(deformation.GetMeshAtRest(), mapped.Whole));
     }
   }
+  warnings.insert(deformvolume::DescribeIgnored(source.ShapeParts));
+  warnings.erase(""); // of what there is nothing to say
   using Attributes = vtkDataSetAttributes;
   for (const auto& [role, kind] : { std::pair(Attributes::VECTORS, "vectors"),
          std::pair(Attributes::NORMALS, "normals"), std::pair(Attributes::TENSORS, "tensors") })
@@ -79,10 +106,9 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfInputs(vtkImageData* volume,
         "deformation. If their directions matter, rotate them afterwards.");
     }
   }
-  if (!this->State->Deformation.IsField())
+  if (!deformation.IsField())
   {
-    deformvolume::AddCellWarnings(
-      this->State->Deformation.GetRestMesh(), this->Gathering, warnings);
+    deformvolume::AddCellWarnings(deformation.GetRestMesh(), this->Gathering, warnings);
   }
   const std::string news = deformvolume::ReplaceWarnings(this->WarnedOf, std::move(warnings));
   if (!news.empty())

@@ -49,8 +49,8 @@ typedef struct
   }
 
 // Integers of 64 bits do not fit into REAL. So the difference to the nearest vertex is interpolated, which is exact if
-// the values are close to each other. Rounding errors of large differences must not lead out of the range of the
-// vertices, least of all beyond that of the type.
+// the values are close to each other. As the nearest vertex has a weight of at least 1/4, rounding errors of large
+// differences do not lead out of the range of the values.
 #define STORE_LINEAR_64(SOURCE, TARGET, COMPONENTS, TYPE, CONVERT)                                 \
   for (int c = 0; c < COMPONENTS; ++c)                                                             \
   {                                                                                                \
@@ -58,26 +58,18 @@ typedef struct
     TYPE value = first;                                                                            \
     if (s->Only < 0)                                                                               \
     {                                                                                              \
-      TYPE least = first;                                                                          \
-      TYPE most = first;                                                                           \
       REAL sum = (REAL)first;                                                                      \
       REAL difference = 0;                                                                         \
       int near = 1;                                                                                \
       for (int k = 0; k < 4; ++k)                                                                  \
       {                                                                                            \
         const TYPE other = SOURCE[s->Sources[k] * COMPONENTS + c];                                 \
-        least = min(least, other);                                                                 \
-        most = max(most, other);                                                                   \
         near &= abs_diff(other, first) < (1UL << 62);                                              \
         difference =                                                                               \
           MULTIPLY_ADD_REAL(s->Weights[k], (REAL)(long)((ulong)other - (ulong)first), difference); \
         sum = MULTIPLY_ADD_REAL(s->Weights[k], (REAL)other - (REAL)first, sum);                    \
       }                                                                                            \
-      const TYPE step = (TYPE)abs(convert_long_rte(near ? difference : 0));                        \
-      value = !near        ? CONVERT(sum)                                                          \
-        : difference < 0 ? sub_sat(first, step)                                                    \
-                         : add_sat(first, step);                                                   \
-      value = clamp(value, least, most);                                                           \
+      value = near ? (TYPE)((ulong)first + (ulong)convert_long_rte(difference)) : CONVERT(sum);    \
     }                                                                                              \
     TARGET[s->Target * COMPONENTS + c] = value;                                                    \
   }
