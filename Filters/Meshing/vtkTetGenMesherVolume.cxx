@@ -220,7 +220,14 @@ deformvolume::UncoveredVoxels vtkTetGenMesher::MeshBody(const deformvolume::Body
     deformvolume::GrowAround(surface, outside, 0.05 * voxel, 0.75 * length);
   }
   output->ShallowCopy(this->Fill(surface, length, spheres, isLast));
-  return deformvolume::FindUncovered(output, body);
+  deformvolume::UncoveredVoxels uncovered = deformvolume::FindUncovered(output, body);
+  // Smoothing can collapse the surface of a few voxels to nearly a point, which Shrink() turns
+  // inside out, so that the check above finds the voxels in a surface that is larger than this one.
+  if (!isLast && !uncovered.OfMeshed.empty())
+  {
+    throw deformvolume::SurfaceRejected("The surface of a part of the body has collapsed.");
+  }
+  return uncovered;
 }
 
 void vtkTetGenMesher::WarnOfVoxelsOutside()
@@ -232,7 +239,7 @@ void vtkTetGenMesher::WarnOfVoxelsOutside()
     return;
   }
   std::ostringstream text;
-  text.precision(2);
+  text.precision(share < 0.995 ? 2 : 3);
   text << WithCommas(this->NumberOfBodyVoxelsOutside) << " of the "
        << WithCommas(this->NumberOfBodyVoxels) << " voxels of the body (" << 100.0 * share
        << " %) lie outside the mesh.";

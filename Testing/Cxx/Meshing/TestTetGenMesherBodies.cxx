@@ -167,6 +167,41 @@ TEST(TetGenMesherBodies, Specks)
   VerifyHeld(mesher, lonely, 0);
 }
 
+// Smoothing collapses the surface of a few voxels if the edge length is about that of a voxel.
+TEST(TetGenMesherBodies, FewVoxels)
+{
+  const std::pair<const char*, Body> bodies[] = {
+    { "one voxel", [](int x, int y, int z) { return x == 40 && y == 40 && z == 40; } },
+    { "two voxels", [](int x, int y, int z) { return x / 2 == 20 && y == 40 && z == 40; } },
+    { "ball and voxel",
+      [](int x, int y, int z)
+      {
+        return Square(x - 40) + Square(y - 40) + Square(z - 40) < Square(8) ||
+          (x == 10 && y == 40 && z == 40);
+      } }
+  };
+  for (const auto& [name, body] : bodies)
+  {
+    const vtkSmartPointer<vtkImageData> volume = MakeVolume(body);
+    volume->SetSpacing(1.0, 1.0, 1.0);
+    for (const double length : { 0.9, 1.1, 1.3 })
+    {
+      SCOPED_TRACE(testing::Message() << name << ", edges of " << length);
+      vtkNew<vtkTetGenMesher> mesher;
+      FailureCheck check(mesher);
+      mesher->SetInputData(volume);
+      mesher->SetTargetEdgeLength(length);
+      mesher->SetSpeckSize(0);
+      check.Succeeds();
+      VerifyHeld(mesher, volume, 0);
+      double bounds[6];
+      mesher->GetOutput()->GetBounds(bounds);
+      // A voxel extends half a spacing from its center.
+      EXPECT_GE(bounds[5] - bounds[4], 1.0);
+    }
+  }
+}
+
 // Half of a slice is thicker than the margin. The mesh must contain the voxels of the outermost
 // slices nevertheless.
 TEST(TetGenMesherBodies, ThickSlices)
@@ -223,6 +258,11 @@ TEST(TetGenMesherBodies, PieceModes)
   EXPECT_EQ(mesher->GetNumberOfBodyVoxels(), first + second);
   EXPECT_EQ(mesher->GetNumberOfBodyVoxelsOutside(), first);
   EXPECT_TRUE(HasPart(mesher->GetSummary(), "Body voxels outside the mesh: 1,125"));
+
+  mesher->SetInputData(
+    MakeVolume([](int x, int y, int z) { return x % 8 == 0 && y % 8 == 0 && z % 8 == 0; }));
+  mesher->SetSpeckSize(0);
+  check.Warns("999 of the 1,000 voxels of the body (99.9 %) lie outside the mesh.");
 }
 
 } // namespace
