@@ -20,6 +20,9 @@ import numpy
 from . import _arrays, _driver, _native, _structs
 
 
+_POLYHEDRON = 42  # the type of cells in VTK
+
+
 class DeformationWarning(UserWarning):
     """A warning that a result is incomplete, or that a part of the input had no effect."""
 
@@ -40,7 +43,8 @@ class Mesh:
     Attributes:
         points: shape (n, 3), world coordinates at rest; float32 or float64, other types become float64.
         cells: tetrahedra, shape (m, 4), indices of points; or a tuple (types, cells): VTK's cell types, such as
-            hexahedra (12) and quadratic tetrahedra (24), and a list with the point indices of each cell.
+            hexahedra (12) and quadratic tetrahedra (24), and a list with the point indices of each cell. Polyhedra (42)
+            cannot be given, because they need faces.
         displacements: shape (n, 3), in world units; None: set later by Deformer.set_displacements().
     """
 
@@ -271,6 +275,11 @@ def _cells(cells):
         if types.size > 0 and (types.dtype.kind not in "iu" or types.min() < 0 or types.max() > 255):
             raise ValueError("Cell types must be integers from 0 to 255, as VTK's cell types are.")
         types = numpy.ascontiguousarray(types, dtype=numpy.uint8)
+        if (types == _POLYHEDRON).any():
+            raise ValueError(
+                f"Cell {numpy.argmax(types == _POLYHEDRON)} is a polyhedron (type {_POLYHEDRON}), whose faces a Mesh "
+                "does not have. Split it into tetrahedra, or use deformvolume.vtk, which takes polyhedra of VTK."
+            )
         offsets = numpy.concatenate(([0], numpy.cumsum(lengths, dtype=numpy.int64))).astype(numpy.int64)
         flat = [numpy.asarray(points) for points in lists]
         for number, points in enumerate(flat):
@@ -405,7 +414,8 @@ class Deformer:
         """Like set_volume(), for a grid of the library and arrays with the axes z, y, x."""
 
         def each(value, what):
-            values = list(value) if isinstance(value, (list, tuple, numpy.ndarray)) else [value] * len(images)
+            is_list = isinstance(value, (list, tuple)) or (isinstance(value, numpy.ndarray) and value.ndim > 0)
+            values = list(value) if is_list else [value] * len(images)
             if len(values) != len(images):
                 raise ValueError(
                     f"{what} has {len(values)} values, but the volume has {len(images)} arrays. Give one value, or one "
@@ -512,9 +522,12 @@ class Deformer:
             if displacements is not None:
                 self.set_displacements(displacements)
 
-    def _set_mesh_arrays(self, points, connectivity, types=None, offsets=None) -> None:
+    def _set_mesh_arrays(
+        self, points, connectivity, types=None, offsets=None, *, degrees=None, faces=None
+    ) -> None:
         """Sets a mesh in the form of the library: the point indices of all cells, and the offsets of the cells. Types
-        and offsets are None if all cells are tetrahedra."""
+        and offsets are None if all cells are tetrahedra. degrees: of Lagrange cells, an array of int32 with the shape
+        (m, 3). faces: of the polyhedra, an array of int64."""
         points = _arrays.vectors(points, None, "The array of points")
         if offsets is not None and (
             len(offsets) != len(types) + 1
@@ -534,6 +547,9 @@ class Deformer:
             connectivity=connectivity.ctypes.data,
             types=types.ctypes.data if types is not None else None,
             offsets=offsets.ctypes.data if offsets is not None else None,
+            degrees=degrees.ctypes.data if degrees is not None else None,
+            faces=faces.ctypes.data if faces is not None else None,
+            number_of_face_values=len(faces) if faces is not None else 0,
         )
         with self._locked():
             self._call("dv_set_mesh", ctypes.byref(struct))
@@ -633,6 +649,8 @@ class Deformer:
             if numpy.shape(spacing) != (3,):
                 raise ValueError(f"The spacing is {spacing}. Give three numbers.")
             struct.spacing[:] = [float(value) for value in spacing]
+            if not all(value > 0.0 for value in struct.spacing):
+                raise ValueError(f"The spacing is {spacing}. Give three numbers greater than 0.")
         self._call("dv_set_output", ctypes.byref(struct))
 
     def _find_output_grid(self) -> _structs.Grid:
@@ -870,7 +888,7 @@ def deform(
         deformer.set_reference(reference)
         if reference is None:
             deformer.set_output(bounds, padding=padding, spacing=spacing)
-        elif bounds != "deformed" or padding != 0 or spacing is not None:
+        elif not (isinstance(bounds, str) and bounds == "deformed") or padding != 0 or spacing is not None:
             raise ValueError(
                 "The output has the grid of the reference. Do not give bounds, padding or spacing with a reference."
             )

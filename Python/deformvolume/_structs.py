@@ -52,6 +52,8 @@ class Mesh(_Structure):
         ("types", c_void_p),
         ("offsets", c_void_p),
         ("degrees", c_void_p),
+        ("faces", c_void_p),
+        ("number_of_face_values", c_int64),
     ]
 
 

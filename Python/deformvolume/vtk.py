@@ -12,8 +12,9 @@ import sys
 import numpy
 from vtkmodules.util.numpy_support import get_vtk_array_type, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonCore import VTK_BIT, VTK_CHAR, VTK_UNSIGNED_CHAR, vtkDataArray, vtkOutputWindow
+from vtkmodules.vtkCommonCore import VTK_BIT, VTK_CHAR, VTK_UNSIGNED_CHAR, vtkDataArray, vtkIdList, vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import (
+    VTK_POLYHEDRON,
     vtkDataObject,
     vtkDataSetAttributes,
     vtkImageData,
@@ -79,7 +80,7 @@ def _shape_stamp(mesh):
     """Returns a stamp of the points and cells of a mesh, without its arrays."""
     cells = mesh.GetCells()
     parts = (mesh.GetPoints(), cells, cells.GetConnectivityArray(), cells.GetOffsetsArray(), _cell_types(mesh))
-    parts += _find_cell_masks(mesh)
+    parts += (*_find_cell_masks(mesh), mesh.GetCellData().GetHigherOrderDegrees())
     # Modified() of the mesh stands for all that it has, but GetMTime() is also that of its arrays.
     arrays = max(mesh.GetPointData().GetMTime(), mesh.GetCellData().GetMTime(), mesh.GetFieldData().GetMTime())
     return _stamp(*parts) + (mesh.__this__, mesh.GetMTime() if mesh.GetMTime() > arrays else 0)
@@ -114,6 +115,36 @@ def _cell_types(mesh):
         return mesh.GetCellTypes()  # from VTK 9.6 on
     except TypeError:
         return mesh.GetCellTypesArray()
+
+
+def _find_degrees(mesh, used):
+    """Returns the degrees of Lagrange cells along their axes; None if they follow from the numbers of points."""
+    array = mesh.GetCellData().GetHigherOrderDegrees()
+    if array is None:
+        return None
+    if array.GetNumberOfComponents() != 3:
+        raise ValueError(
+            f"The higher order degrees of the cells have {array.GetNumberOfComponents()} components. Give them three."
+        )
+    degrees = _view(array, (mesh.GetNumberOfCells(),))
+    # A degree that is not valid is an error of the engine.
+    degrees = numpy.where((degrees >= 1) & (degrees < 1e6), degrees, 0)
+    return numpy.ascontiguousarray(degrees if used is None else degrees[used], dtype=numpy.int32)
+
+
+def _find_faces(mesh, types, used):
+    """Returns the faces of the polyhedra, in the form of the library; None if there are none. types: of the cells that
+    are used."""
+    cells = numpy.flatnonzero(types == VTK_POLYHEDRON)
+    if cells.size == 0:
+        return None
+    if used is not None:
+        cells = numpy.flatnonzero(used)[cells]
+    stream, faces = vtkIdList(), []
+    for cell in cells.tolist():
+        mesh.GetFaceStream(cell, stream)
+        faces.extend(stream.GetId(number) for number in range(stream.GetNumberOfIds()))
+    return numpy.array(faces, dtype=numpy.int64)
 
 
 def _name_arrays(data, masks):
@@ -721,7 +752,14 @@ class DeformVolume(VTKPythonAlgorithmBase):
                 sizes = numpy.diff(offsets)
                 types, connectivity = types[used], connectivity[numpy.repeat(used, sizes)]
                 offsets = numpy.concatenate(([0], numpy.cumsum(sizes[used])))
-            self._deformer._set_mesh_arrays(points, connectivity, types, offsets)
+            self._deformer._set_mesh_arrays(
+                points,
+                connectivity,
+                types,
+                offsets,
+                degrees=_find_degrees(mesh, used),
+                faces=_find_faces(mesh, types, used),
+            )
 
         self._send("deformation", (_shape_stamp(mesh), "mesh"), send_mesh)
         if rest is None:

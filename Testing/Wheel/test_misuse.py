@@ -95,7 +95,7 @@ class Misuse(unittest.TestCase):
         refuse("", [10], [[0, 1, 2]])  # a tetrahedron of three points
         refuse("", [12], [[0, 1, 2, 3]])  # a hexahedron of four points
         refuse("", [10, 24], [[0, 1, 2, 3], [0, 1, 2, 3]])
-        refuse("", [42], [[0, 1, 2, 3]])  # a polyhedron without faces
+        refuse("Cell 1 is a polyhedron .* whose faces a Mesh does not have", [10, 42], [[0, 1, 2, 3]] * 2)
         refuse("", [78], [[0, 1, 2, 3]])  # a Bezier cell
         refuse("one type for each cell", [10, 10], [[0, 1, 2, 3]])
         refuse("9", [10], [[0, 1, 2, 9]])
@@ -175,6 +175,11 @@ class Misuse(unittest.TestCase):
         self.refuse(TypeError, "The device is None", device=None)
         self.refuse(TypeError, "The reference is a ndarray", reference=AFFINE)
         self.refuse(ValueError, "The spacing is 1.0", spacing=1.0)
+        for spacing in ((0, 0, 0), (1, 0, 1), (1, -1, 1), (1, numpy.nan, 1)):
+            self.refuse(ValueError, "three numbers greater than 0", spacing=spacing)
+        bounds = numpy.array([0.0, 1.0, 0.0, 1.0, 0.0, 1.0])
+        self.refuse(ValueError, "with a reference", reference=((5, 5, 5), AFFINE), bounds=bounds)
+        self.refuse(ValueError, "with a reference", reference=((5, 5, 5), AFFINE), bounds="volume")
         self.refuse(ValueError, "padding is", padding=2**40)
         self.refuse(TypeError, "masked array", numpy.ma.masked_less(make_volume(), 0.5))
         self.refuse(TypeError, "integer", padding=1.5)
@@ -184,6 +189,13 @@ class Misuse(unittest.TestCase):
         self.refuse(ValueError, "int16 cannot hold", make_volume().astype("int16"), background=numpy.nan)
         field = deformvolume.Field(numpy.zeros((2, 2, 2, 3)), AFFINE, inverse="False")
         self.refuse(TypeError, "inverse is 'False'", mesh=field)
+
+    def test_background(self):
+        mesh = Mesh(POINTS, CELLS, MOVED)
+        wanted = deformvolume.deform(make_volume(), mesh, AFFINE, background=7.0).array
+        for background in (numpy.array(7.0), numpy.float32(7.0), numpy.array([7.0]), [7.0]):
+            result = deformvolume.deform(make_volume(), mesh, AFFINE, background=background).array
+            numpy.testing.assert_array_equal(result, wanted)
 
     def test_two_tetrahedra(self):
         cells = ((0, 1, 2, 3), (0, 1, 2, 3))

@@ -135,6 +135,74 @@ class Pipeline(unittest.TestCase):
             numpy.testing.assert_array_equal(get_mask(), hexahedron)
             mesh.GetPointData().RemoveArray(name)
 
+    def test_polyhedra(self):
+        from vtkmodules.vtkCommonCore import vtkIdList
+        from vtkmodules.vtkCommonDataModel import VTK_HEXAHEDRON, VTK_POLYHEDRON, VTK_TETRA, vtkUnstructuredGrid
+
+        # The same box and a tetrahedron beside it, with faces in both senses.
+        faces = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (4, 7, 3, 0))
+        results = []
+        for kind in (VTK_HEXAHEDRON, VTK_POLYHEDRON):
+            mesh = vtkUnstructuredGrid()
+            mesh.SetPoints(make_mesh(self.SHIFT).GetPoints())
+            mesh.GetPoints().SetPoint(1, 5.0, -10.0, -10.0)
+            mesh.GetPoints().InsertNextPoint(30.0, 0.0, 0.0)
+            for number in range(4):
+                if number % 2 == 0:
+                    mesh.InsertNextCell(VTK_TETRA, 4, [1, 2, 5, 8])
+                elif kind == VTK_HEXAHEDRON:
+                    mesh.InsertNextCell(kind, 8, list(range(8)))
+                else:
+                    stream = vtkIdList()
+                    for value in (6, *(value for face in faces for value in (4, *face))):
+                        stream.InsertNextId(value)
+                    mesh.InsertNextCell(kind, stream)
+            add_vectors(mesh, numpy.arange(27).reshape(9, 3) / 9)
+            ghosts = numpy.array([0, 0, 32, 32], numpy.uint8)  # HIDDENCELL
+            mesh.AllocateCellGhostArray()
+            for number, ghost in enumerate(ghosts.tolist()):
+                mesh.GetCellGhostArray().SetValue(number, ghost)
+            self.filter.SetDeformationData(mesh)
+            self.filter.Update()
+            results.append(values(self.filter.GetOutput()).copy())
+        numpy.testing.assert_array_equal(results[1], results[0])
+
+    def test_lagrange_cells(self):
+        from vtkmodules.util.numpy_support import numpy_to_vtk
+        from vtkmodules.vtkCommonDataModel import VTK_LAGRANGE_HEXAHEDRON
+
+        # A hexahedron with a node in the middle of each edge along x.
+        mesh = make_mesh(self.SHIFT)
+        corners = [mesh.GetPoint(number) for number in range(8)]
+        for begin, end in ((0, 1), (3, 2), (4, 5), (7, 6)):
+            mesh.GetPoints().InsertNextPoint(*numpy.add(corners[begin], corners[end]) / 2)
+        mesh.Allocate(1)
+        mesh.InsertNextCell(VTK_LAGRANGE_HEXAHEDRON, 12, list(range(12)))
+        add_vectors(mesh, numpy.tile(self.SHIFT, (12, 1)))
+        degrees = numpy_to_vtk(numpy.array([[2.0, 1.0, 1.0]]), deep=True)
+        degrees.SetName("degrees")
+        mesh.GetCellData().SetHigherOrderDegrees(degrees)
+        self.filter.SetDeformationData(mesh)
+        self.filter.Update()
+        self.expect_shift()
+        degrees.SetTuple3(0, 1.0, 2.0, 1.0)
+        degrees.Modified()
+        vectors = numpy.tile(self.SHIFT, (12, 1))
+        vectors[8:] = 0.0
+        add_vectors(mesh, vectors)
+        self.filter.Update()
+        first = values(self.filter.GetOutput()).copy()
+        degrees.SetTuple3(0, 2.0, 1.0, 1.0)
+        degrees.Modified()
+        self.filter.Update()
+        self.assertFalse(numpy.array_equal(values(self.filter.GetOutput()), first))
+        degrees.SetTuple3(0, 0.5, 1.0, 1.0)
+        degrees.Modified()
+        self.expect_error("does not fit its degree", mesh)
+        degrees.SetNumberOfComponents(1)
+        degrees.Modified()
+        self.expect_error("degrees of the cells have 1 components", mesh)
+
     def test_names(self):
         from deformvolume.vtk import DeformVolume
         from vtkmodules.vtkCommonCore import vtkStringArray
@@ -174,9 +242,9 @@ class Pipeline(unittest.TestCase):
         deformer = self.filter._deformer
         for name in ("_set_volume_grid", "_set_mesh_arrays", "set_displacements"):
 
-            def call(*arguments, name=name, before=getattr(deformer, name)):
+            def call(*arguments, name=name, before=getattr(deformer, name), **options):
                 sent.append(name)
-                return before(*arguments)
+                return before(*arguments, **options)
 
             setattr(deformer, name, call)
         for _ in range(3):
