@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,44 +40,158 @@ void CheckNumbers(const Options& options)
   }
 }
 
-/// Inputs must not be overwritten.
-void CheckOverwriting(const Options& options)
+/// An argument of the command line that names a file, and the option that it belongs to.
+struct NamedFile
 {
-  std::vector<std::string> outputs = options.Outputs;
-  const auto add = [&](const char* option, const std::vector<std::string>& more)
+  std::string Option;
+  std::string Path;
+};
+
+/// Returns the files to write for one argument.
+std::vector<std::string> GetWrittenFiles(const Options& options, const NamedFile& output)
+{
+  std::vector<std::string> files;
+  if (output.Option == "--movie" && HasSuffix(output.Path, { ".png" }))
   {
-    for (const std::string& output : more)
+    for (int frame = 1; frame <= options.Frames; ++frame)
     {
-      if (std::count(outputs.begin(), outputs.end(), output) > 0)
+      files.push_back(GetFramePath(output.Path, frame));
+    }
+    return files;
+  }
+  files.push_back(output.Path);
+  if (HasSuffix(output.Path, { ".mhd", ".nhdr" }))
+  {
+    files.push_back(output.Path.substr(0, output.Path.rfind('.')) + ".raw"); // the values
+  }
+  return files;
+}
+
+/// Returns the files to read for one argument. Files that the header of a volume may name are
+/// among them.
+std::vector<std::string> GetReadFiles(const std::string& path)
+{
+  std::vector<std::string> files{ path };
+  if (!HasSuffix(path, { ".mhd", ".mha", ".nhdr", ".nrrd" }))
+  {
+    return files;
+  }
+  const std::string folder =
+    vtksys::SystemTools::GetFilenamePath(vtksys::SystemTools::CollapseFullPath(path));
+  std::ifstream header(path);
+  std::string line;
+  constexpr std::streamoff longestHeader = 1 << 20;
+  while (std::getline(header, line) && line.find('\0') == std::string::npos &&
+    header.tellg() < longestHeader)
+  {
+    // The name of a file is a line of its own, or follows "ElementDataFile =" or "data file:".
+    const std::size_t sign = line.find_first_of("=:");
+    const std::string name = Trim(sign == std::string::npos ? line : line.substr(sign + 1));
+    if (!name.empty())
+    {
+      files.push_back(vtksys::SystemTools::CollapseFullPath(name, folder));
+    }
+  }
+  return files;
+}
+
+/// Whether two paths lead to one file, which need not exist.
+bool AreSame(const std::string& first, const std::string& second)
+{
+  return vtksys::SystemTools::CollapseFullPath(first) ==
+    vtksys::SystemTools::CollapseFullPath(second) ||
+    vtksys::SystemTools::SameFile(first, second);
+}
+
+std::vector<NamedFile> GetOutputs(const Options& options)
+{
+  std::vector<NamedFile> outputs;
+  const auto add = [&](const char* option, const std::vector<std::string>& paths)
+  {
+    for (const std::string& path : paths)
+    {
+      if (!path.empty())
       {
-        throw UsageError(output + " is written twice. Give " + option + " another name");
+        outputs.push_back({ option, path });
       }
-      outputs.push_back(output);
     }
   };
+  add("--output", options.Outputs);
   add("--label-output", options.LabelOutputs);
   add("--jacobian", options.Jacobians);
   add("--inverse-field", options.InverseFields);
   add("--points-output", options.PointsOutputs);
-  outputs.push_back(options.Image);
-  outputs.push_back(options.Movie);
-  outputs.push_back(options.MeshOutput);
-  for (const std::string& output : outputs)
+  add("--write-mesh", { options.MeshOutput });
+  add("--image", { options.Image });
+  add("--movie", { options.Movie });
+  return outputs;
+}
+
+std::vector<std::string> GetInputs(const Options& options)
+{
+  std::vector<std::string> inputs{ options.Volume, options.LabelVolume, options.Mesh, options.Rest,
+    options.Field, options.Reference };
+  inputs.insert(inputs.end(), options.Cuts.begin(), options.Cuts.end());
+  inputs.insert(inputs.end(), options.Points.begin(), options.Points.end());
+  for (const TransformFile& transform : options.Transforms)
   {
-    std::vector<std::string> inputs{ options.Volume, options.LabelVolume, options.Mesh,
-      options.Rest, options.Field, options.Reference };
-    inputs.insert(inputs.end(), options.Cuts.begin(), options.Cuts.end());
-    inputs.insert(inputs.end(), options.Points.begin(), options.Points.end());
-    for (const TransformFile& transform : options.Transforms)
+    inputs.push_back(transform.Path);
+  }
+  inputs.erase(std::remove(inputs.begin(), inputs.end(), ""), inputs.end());
+  return inputs;
+}
+
+void CheckWrittenOnce(const NamedFile& file, const NamedFile& other, const std::string& path,
+  const std::string& otherPath)
+{
+  // The files of one option have the same values.
+  const bool areSameValues =
+    file.Option == other.Option && path != file.Path && otherPath != other.Path;
+  if (areSameValues || !AreSame(path, otherPath))
+  {
+    return;
+  }
+  throw UsageError((path == file.Path ? path + " is written twice"
+                                      : path + " is written twice, for " + other.Option + " " +
+                         other.Path + " and for " + file.Option + " " + file.Path) +
+    ". Give " + file.Option + " another name");
+}
+
+/// Inputs must not be overwritten, and outputs must not overwrite one another. That includes the
+/// files that hold the values of .mhd and .nhdr files.
+void CheckOverwriting(const Options& options)
+{
+  std::vector<std::pair<NamedFile, std::string>> written;
+  for (const NamedFile& output : GetOutputs(options))
+  {
+    const std::vector<std::string> files = GetWrittenFiles(options, output);
+    for (const std::string& file : files)
     {
-      inputs.push_back(transform.Path);
-    }
-    for (const std::string& input : inputs)
-    {
-      if (!output.empty() && !input.empty() && vtksys::SystemTools::SameFile(output, input))
+      for (const auto& [other, otherFile] : written)
       {
-        throw UsageError(
-          output + " is an input, and would be overwritten. Give the output another name");
+        CheckWrittenOnce(output, other, file, otherFile);
+      }
+    }
+    for (const std::string& file : files)
+    {
+      written.emplace_back(output, file);
+    }
+  }
+  for (const std::string& input : GetInputs(options))
+  {
+    const std::vector<std::string> files = GetReadFiles(input);
+    for (const auto& [output, file] : written)
+    {
+      for (const std::string& read : files)
+      {
+        if (AreSame(file, read))
+        {
+          throw UsageError(file +
+            (read == input ? " is an input" : " holds the values of the input " + input) +
+            ", and would be overwritten. Give " +
+            (file == output.Path ? "the output" : output.Option + " " + output.Path) +
+            " another name");
+        }
       }
     }
   }
@@ -168,6 +283,13 @@ void CheckDeformation(const Options& options)
     {
       throw UsageError("--push, --displacement and --scale need a deformation: --mesh, --field, "
                        "--tetgen or --lattice");
+    }
+    if (options.Extrapolate || options.KeepDistance || options.Resampler == "mesh-rasterization")
+    {
+      throw UsageError(std::string(options.Extrapolate ? "--outside extrapolate"
+                           : options.KeepDistance      ? "--keep"
+                                                       : "--resampler mesh-rasterization") +
+        " needs a deformation, such as --mesh, --field or --tetgen. Without one, nothing moves");
     }
     return;
   }

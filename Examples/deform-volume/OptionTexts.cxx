@@ -66,7 +66,7 @@ Pull ParsePull(const std::string& text)
 {
   const bool hasRadius = std::count(text.begin(), text.end(), ',') == 6;
   const auto numbers = ParseNumbers<double, 7>("--pull", hasRadius ? text : text + ",0",
-    "six or seven numbers X,Y,Z,DX,DY,DZ[,RADIUS] with commas between them");
+    "six or seven numbers X,Y,Z,DX,DY,DZ[,RADIUS] with commas between them", text);
   Pull pull;
   pull.Point = { { numbers[0], numbers[1], numbers[2] } };
   pull.Displacement = { { numbers[3], numbers[4], numbers[5] } };
@@ -89,12 +89,12 @@ Fixation ParseFixation(const std::string& text)
   {
     fixation.Which = Fixation::Kind::Box;
     fixation.Bounds = ParseNumbers<double, 6>(
-      "--fix", rest, "box: and six numbers X0,X1,Y0,Y1,Z0,Z1 with commas between them");
+      "--fix", rest, "box: and six numbers X0,X1,Y0,Y1,Z0,Z1 with commas between them", text);
   }
   else if (kind == "below" || kind == "label")
   {
     fixation.Which = kind == "below" ? Fixation::Kind::Below : Fixation::Kind::Label;
-    fixation.Value = ParseNumbers<double, 1>("--fix", rest, kind + ": and a number")[0];
+    fixation.Value = ParseNumbers<double, 1>("--fix", rest, kind + ": and a number", text)[0];
   }
   else
   {
@@ -111,7 +111,7 @@ Carving ParseCarving(const std::string& text)
     throw UsageError("--carve " + text + ": expected sphere:X,Y,Z,RADIUS");
   }
   const auto numbers = ParseNumbers<double, 4>("--carve", text.substr(shape.size()),
-    "sphere: and four numbers X,Y,Z,RADIUS with commas between them");
+    "sphere: and four numbers X,Y,Z,RADIUS with commas between them", text);
   Carving carving;
   carving.Center = { { numbers[0], numbers[1], numbers[2] } };
   carving.Radius = numbers[3];
@@ -134,7 +134,11 @@ MaterialOfValues ParseMaterial(const std::string& text)
     throw UsageError("--material " + text + ": expected " + shape);
   }
   const auto number = [&](const std::string& part)
-  { return ParseNumbers<double, 1>("--material", part, "a number in " + shape)[0]; };
+  {
+    const std::string expected =
+      part.empty() ? shape : "a number instead of " + part + " in " + shape;
+    return ParseNumbers<double, 1>("--material", part, expected, text)[0];
+  };
   MaterialOfValues material;
   material.Minimum = number(text.substr(0, colon));
   material.Maximum = number(text.substr(colon + 1, equals - colon - 1));

@@ -15,11 +15,12 @@
 #include <sstream>
 #include <string>
 
-/// Reads numbers with commas between them. shape: the expected text, in words. All functions here
-/// throw a UsageError that names the option.
+/// Reads numbers with commas between them. shape: the expected text, in words. whole: the argument
+/// of the option, if the text is only a part of it. All functions here throw a UsageError with the
+/// option and its argument.
 template <typename Number, std::size_t Count>
-std::array<Number, Count> ParseNumbers(
-  const std::string& option, const std::string& text, const std::string& shape)
+std::array<Number, Count> ParseNumbers(const std::string& option, const std::string& text,
+  const std::string& shape, const std::string& whole = "")
 {
   std::array<Number, Count> numbers;
   std::istringstream stream(text);
@@ -31,7 +32,8 @@ std::array<Number, Count> ParseNumbers(
   }
   if (!valid || !(stream >> std::ws).eof())
   {
-    throw UsageError(option + " " + text + ": expected " + shape);
+    const std::string argument = option + " " + (whole.empty() ? text : whole);
+    throw UsageError(argument + (argument.back() == ':' ? "" : ":") + " expected " + shape);
   }
   return numbers;
 }

@@ -127,6 +127,37 @@ fails(2, "overwritten", path("other.vti"), "--mesh", path("in.vti"), "--displace
 with open(path("in.vti"), "rb") as file:
     assert file.read() == content
 
+# Outputs do not overwrite one another, whatever path to them is given.
+here = os.path.join(path(), ".", "o.vti")
+for outputs in (("-o", path("o.vti"), "-o", path("o.vti")), ("-o", path("o.vti"), "--jacobian", here),
+                ("--points-output", path("o.csv"), "--points-output", path("../CommandLine/o.csv")),
+                ("-o", path("o.vti"), "--write-mesh", path("o.vtu"), "--inverse-field", here)):
+    fails(2, "written twice", path("in.vti"), *lattice, *push, *outputs, "--points", "a.csv", "--points", "b.csv",
+          *(() if "--points-output" in outputs else ("--points-output", "a.csv", "--points-output", "b.csv")))
+chain_mail = ("--model", "chainmail", "--pull", "9,20,25,1,0,0", "--frames", "12")
+for image in ("m0001.png", "m0012.png"):
+    fails(2, f"{image} is written twice, for --image", path("in.vti"), *chain_mail, "--movie", path("m.png"), "--image",
+          path(image))
+fails(1, "xvfb-run", path("in.vti"), *chain_mail, "--movie", path("m.png"), "--image", path("m0013.png"),
+      environment={name: value for name, value in os.environ.items() if name != "DISPLAY"})
+
+# The same holds for the files of the values of .mhd and .nhdr files.
+if ".mhd" in written:
+    fails(2, ["o.raw is written twice, for --output", "Give --jacobian"], path("in.vti"), *lattice, *push, "-o",
+          path("o.mhd"), "--jacobian", path("o.nhdr"))
+    call(program, path("in.vti"), *lattice, *push, "-o", path("first.mhd"), "-o", path("second.nhdr"), "-o",
+         path("second.mhd"), "-q")
+    os.rename(path("first.raw"), path("values.raw"))
+    for name in ("named.mhd", "named.mha"):
+        with open(path("first.mhd"), encoding="ascii") as file, open(path(name), "w", encoding="ascii") as named:
+            named.write(file.read().replace("first.raw", "values.raw"))
+    for source, output in (("second.nhdr", "second.mhd"), ("named.mhd", "values.nhdr"), ("named.mha", "values.mhd")):
+        data = output.split(".", maxsplit=1)[0] + ".raw"
+        before = os.stat(path(data))
+        fails(2, f"{data} holds the values of the input", path(source), *lattice, *push, "--jacobian", path(output))
+        assert os.stat(path(data)) == before
+    call(program, path("named.mhd"), *lattice, *push, "-o", path("named.nhdr"), "-q")
+
 # Failures.
 fails(1, "no such file", path("none.nii.gz"), *lattice, *push, "-o", path("o.vti"))
 with open(path("text.nii"), "w", encoding="utf-8") as file:
@@ -243,6 +274,9 @@ kept = read_vti(path("kept.vti"))
 assert (get_values(kept, "vtkValidPointMask") == 1).all()
 values = get_values(kept, "Values")
 assert (values[:2] == before[:2]).all() and not (values == before).all()
+for option in (("--keep", "3"), ("--outside", "extrapolate"), ("--resampler", "mesh-rasterization")):
+    fails(2, " ".join(option[:1 + (option[0] != "--keep")]) + " needs a deformation", path("in.vti"), "--carve",
+          "sphere:9,20,25,5", *option, "-o", path("o.vti"))
 fails(2, "excludes", path("in.vti"), *lattice, *push, "--keep", "3", "--outside", "discard", "-o", path("o.vti"))
 fails(2, "--keep", path("in.vti"), *lattice, *push, "--keep", "-1", "-o", path("o.vti"))
 

@@ -55,6 +55,10 @@ fails(2, "--young requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--
 for text in ("5=1", "1:2", "1:2=", "1:2=3,", "1:2=3,0.3,1,4", "2:1=3", "a:2=3"):
     fails(2, f"--material {text}" if text[0] in "25" else "--material", "--model", "fem", *lattice, *fix,
           "--material", text)
+for text in ("0:10=100,,5", "0:10=100,a", "a:2=3"):
+    fails(2, f"--material {text}: expected", "--model", "fem", *lattice, *fix, "--material", text)
+for text in ("box:1,2", "below:x", "label:"):
+    fails(2, f"--fix {text.removesuffix(':')}: expected", "--model", "fem", *lattice, "--fix", text)
 for text in ("kidney", "Liver", "1:2=kidney", "1:2=liver,0.3"):
     fails(2, "brain, liver, fat, muscle, skin, cartilage, bone", "--model", "fem", *lattice, *fix, "--material", text)
 fails(2, "--material liver and --young set the same property", "--model", "fem", *lattice, *fix, "--material", "liver",

@@ -16,6 +16,13 @@ bool HasSuffix(const std::string& path, const std::vector<const char*>& suffixes
     [&name](const char* suffix) { return vtksys::SystemTools::StringEndsWith(name, suffix); });
 }
 
+std::string Trim(const std::string& text)
+{
+  const char* const space = " \t\r\n";
+  const std::size_t begin = std::min(text.find_first_not_of(space), text.size());
+  return text.substr(begin, text.find_last_not_of(space) + 1 - begin);
+}
+
 std::string FindReadingFault(const std::string& path, bool canBeFolder)
 {
   if (access(path.c_str(), R_OK) != 0)

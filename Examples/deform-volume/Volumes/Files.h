@@ -9,6 +9,9 @@
 /// case.
 bool HasSuffix(const std::string& path, const std::vector<const char*>& suffixes);
 
+/// Returns a text without white space at its ends.
+std::string Trim(const std::string& text);
+
 /// Returns why a file cannot be read, such as "there is no such file", or "" if it can be read.
 std::string FindReadingFault(const std::string& path, bool canBeFolder = false);
 
