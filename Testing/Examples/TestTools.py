@@ -48,6 +48,11 @@ fails(2, "at least one --pull", "--model", "chainmail")
 fails(2, "--pull requires --model", *cut, "--pull", pull_text)
 fails(2, "same radius", *pull, "--pull", "1,2,3,4,5,6,7")
 fails(2, "--model", "--model", "jelly", "--pull", pull_text)
+fails(2, "--carve sphere:1,2: expected", "--carve", "sphere:1,2")
+fails(2, "--pull 1,2: expected", "--model", "chainmail", "--pull", "1,2")
+fails(1, "no-such-device", *pull, "--device", "no-such-device")
+fails(1, ["the --pull at 9,20,25 and the one at 9.2,20,25", "hold the same voxel"], "--model", "chainmail", "--pull",
+      "9,20,25,1,0,0", "--pull", "9.2,20,25,0,1,0")
 fails(2, "exactly one of", *pull, "--lattice", "5,5,5", "--push", "1,2,3,4,5,6,7")
 fails(2, "--push", *cut, "--push", "1,2,3,4,5,6,7")
 
@@ -126,6 +131,11 @@ assert chain_mail.GetNumberOfMovedVoxels() > 50, chain_mail.GetNumberOfMovedVoxe
 output, _ = check("pulled.vti", deform(carver.GetOutput(), chain_mail.GetOutput()), *cut, *carve,
                   *pull)
 assert f"{chain_mail.GetNumberOfMovedVoxels()} voxels moved" in output
+
+# Pulls that contradict one another are a warning.
+apart = [f"{middle[0] + side},{middle[1]},{middle[2]},{9 * side},0,0" for side in (-1, 1)]
+Messages.warns(program, ["The --pull contradict one another", "Of 2, 1 moved less than given"], path("in.vti"),
+               "--model", "chainmail", "--pull", apart[0], "--pull", apart[1], "-o", path("apart.vti"))
 
 # Tools beside the volume do nothing, with a warning.
 write_sheet("far.vtp", bounds[1] + 100)
