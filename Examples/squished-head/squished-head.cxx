@@ -8,10 +8,12 @@
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkConnectivityFilter.h>
+#include <vtkDataArray.h>
 #include <vtkDeformVolumeFilter.h>
 #include <vtkDeformationHandleSource.h>
 #include <vtkFiniteElementDeformation.h>
 #include <vtkImageContinuousDilate3D.h>
+#include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
 #include <vtkMassSpringDeformation.h>
 #include <vtkMaterialFromVolume.h>
@@ -36,6 +38,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <string>
 
 namespace
 {
@@ -43,6 +46,29 @@ constexpr double Nose[3] = { 90.0, 207.0, 32.0 };
 constexpr double NoseRadius = 18.0;
 constexpr double Pull[3] = { 0.0, 30.0, 8.0 };
 constexpr int NumberOfFrames = 30;
+
+// Returns why the volume of a reader is not a head like ch2.nii.gz; "" if it is.
+std::string FindFault(vtkNIFTIImageReader* reader)
+{
+  if (!reader->CanReadFile(reader->GetFileName()))
+  {
+    return "there is no such file, or it is not a NIfTI file";
+  }
+  reader->Update();
+  vtkImageData* volume = reader->GetOutput();
+  if (reader->GetErrorCode() != 0 || !volume->GetPointData()->GetScalars())
+  {
+    return "its data are damaged or not complete";
+  }
+  const vtkIdType voxel = volume->FindPoint(const_cast<double*>(Nose));
+  if (voxel < 0 || !(volume->GetPointData()->GetScalars()->GetComponent(voxel, 0) >= 1.0))
+  {
+    return "it has no nose 90 mm to the right, 207 mm to the front and 32 mm above its first "
+           "voxel, "
+           "where ch2.nii.gz has it";
+  }
+  return "";
+}
 
 // Makes a mesh of cubes, each of five tetrahedra, which have the materials of their voxels. cells:
 // number of cubes along x. Leaves out tetrahedra that hold air only, and noise in a corner of the
@@ -187,6 +213,12 @@ int main(int argc, char* argv[])
   }
   vtkNew<vtkNIFTIImageReader> reader;
   reader->SetFileName(argv[1]);
+  const std::string fault = FindFault(reader);
+  if (!fault.empty())
+  {
+    std::cerr << "squished-head: cannot use " << argv[1] << ": " << fault << "\n";
+    return 1;
+  }
   // Cubes of 12 mm and 9 mm: the coarser mesh is for finite elements, which add mid-side nodes.
   const auto mesh = MakeMesh(reader->GetOutputPort(), 15);
   const auto fineMesh = MakeMesh(reader->GetOutputPort(), 20);
@@ -198,6 +230,11 @@ int main(int argc, char* argv[])
   MoveHandle(handle, 1.0);
   elements->SetHandlesConnection(handle->GetOutputPort());
   elements->Update();
+  if (!elements->GetIsConverged())
+  {
+    std::cerr << "squished-head: no equilibrium was found for " << argv[1] << "\n";
+    return 1;
+  }
 
   vtkNew<vtkMassSpringDeformation> springs;
   Hold(springs, fineMesh);
@@ -253,5 +290,5 @@ int main(int argc, char* argv[])
             << byElements->GetNumberOfInvertedTetrahedra() +
       bySprings->GetNumberOfInvertedTetrahedra()
             << " tetrahedra inverted\n";
-  return writer->GetErrorCode() == 0 && elements->GetIsConverged() ? 0 : 1;
+  return writer->GetErrorCode() == 0 ? 0 : 1;
 }

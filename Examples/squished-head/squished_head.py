@@ -34,6 +34,22 @@ AIR, SOFT, BONE = range(3)
 AIR_DENSITY = 100.0
 
 
+def find_fault(reader):
+    """Returns why the volume of a reader is not a head like ch2.nii.gz; "" if it is."""
+    if not reader.CanReadFile(reader.GetFileName()):
+        return "there is no such file, or it is not a NIfTI file"
+    reader.Update()
+    volume = reader.GetOutput()
+    values = volume.GetPointData().GetScalars()
+    if reader.GetErrorCode() != 0 or values is None:
+        return "its data are damaged or not complete"
+    voxel = volume.FindPoint(NOSE)
+    if voxel < 0 or not values.GetComponent(voxel, 0) >= 1.0:
+        return ("it has no nose 90 mm to the right, 207 mm to the front and 32 mm above its first voxel, "
+                "where ch2.nii.gz has it")
+    return ""
+
+
 def make_mesh(volume, cells):
     """Makes a mesh of cubes, each of five tetrahedra, which have the materials of their voxels.
     cells: number of cubes along x. Leaves out tetrahedra that hold air only, and noise in a corner
@@ -145,6 +161,9 @@ size = int(sys.argv[3]) if len(sys.argv) > 3 else 700
 
 reader = vtkNIFTIImageReader()
 reader.SetFileName(sys.argv[1])
+fault = find_fault(reader)
+if fault:
+    sys.exit(f"squished_head.py: cannot use {sys.argv[1]}: {fault}")
 # Cubes of 12 mm and 9 mm: the coarser mesh is for finite elements, which add mid-side nodes.
 mesh = make_mesh(reader.GetOutputPort(), 15)
 fine_mesh = make_mesh(reader.GetOutputPort(), 20)
@@ -155,6 +174,8 @@ handle = deformvolume_vtk.vtkDeformationHandleSource()
 move_handle(handle, 1.0)
 elements.SetHandlesConnection(handle.GetOutputPort())
 elements.Update()
+if not elements.GetIsConverged():
+    sys.exit(f"squished_head.py: no equilibrium was found for {sys.argv[1]}")
 springs = deformvolume_vtk.vtkMassSpringDeformation()
 hold(springs, fine_mesh)
 slow_handle = deformvolume_vtk.vtkDeformationHandleSource()

@@ -11,10 +11,11 @@ LIMIT = 0.05  # limit of the mean difference of color components (0 to 255)
 FOLDER = "/usr/share/mricron/templates"
 
 
-def check_twins(name, volume, check_panels, check_words=None):
+def check_twins(name, volume, check_panels, check_words=None, check_faults=None):
     """Checks the misuse of the program and the script, and lets both draw a volume of the package mricron-data.
     check_panels gets the three pictures that each of them has drawn, and check_words gets the text that they have
-    printed, which must be the same. The arguments of the test are PROGRAM SCRIPT BASELINE FOLDER."""
+    printed, which must be the same. check_faults gets the commands of both, a function path(file) and the path of the
+    volume. The arguments of the test are PROGRAM SCRIPT BASELINE FOLDER."""
     program, script, baseline, path = begin_test(name)
     volume = os.path.join(FOLDER, volume)
     if not os.path.exists(volume):
@@ -23,6 +24,8 @@ def check_twins(name, volume, check_panels, check_words=None):
     call(program, code=2)
     call(program, volume, path("x.png"), "none", code=2)
     call(sys.executable, script, code=1)
+    if check_faults:
+        check_faults([program], [sys.executable, script], path, volume)
     baselines = read_baselines(baseline)
     words = None
     for file, command in (("cxx.png", [program]), ("python.png", [sys.executable, script])):
