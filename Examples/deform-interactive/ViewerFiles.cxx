@@ -39,11 +39,7 @@ void Viewer::OpenVolume(const std::string& path)
 {
   this->Announce("Reading " + path);
   const Volume volume = ReadVolume(path, this->Asked.Reading, this->Reports, true);
-  vtkPointData* arrays = volume.Image->GetPointData();
-  if (!arrays->GetScalars() && arrays->GetNumberOfArrays() > 0)
-  {
-    arrays->SetActiveScalars(arrays->GetArrayName(0));
-  }
+  ChooseScalars(volume.Image, path);
   this->Style->StopSession();
   if (!this->Session->SetInputs(volume.Image))
   {

@@ -98,14 +98,8 @@ double FindBackground(const Options& options, vtkImageData* volume)
 {
   vtkDataArray* scalars = volume->GetPointData()->GetScalars();
   scalars = scalars ? scalars : volume->GetPointData()->GetArray(0);
-  const auto isCategorical = [&options](const char* name)
-  {
-    return name &&
-      std::find(options.CategoricalArrays.begin(), options.CategoricalArrays.end(), name) !=
-      options.CategoricalArrays.end();
-  };
-  if (options.Labels || !scalars || isCategorical(scalars->GetName()) ||
-    scalars->GetNumberOfComponents() != 1 || scalars->GetDataTypeMin() >= 0.0)
+  if (!scalars || options.AreLabels(scalars) || scalars->GetNumberOfComponents() != 1 ||
+    scalars->GetDataTypeMin() >= 0.0)
   {
     return 0.0;
   }
@@ -210,10 +204,21 @@ void PrintInputs(const Volume& volume, const LabelVolume& labels, const Deformat
   }
 }
 
+// Returns the number that an array holds in place of a background.
+double GetHeld(double background, vtkDataArray* scalars)
+{
+  const int type = scalars->GetDataType();
+  return type == VTK_FLOAT || type == VTK_DOUBLE
+    ? background
+    : std::clamp(std::nearbyint(background), scalars->GetDataTypeMin(), scalars->GetDataTypeMax());
+}
+
 void PrintResult(vtkDeformVolumeFilter* filter)
 {
   std::cout << "result     " << GetDimensionsText(filter->GetOutput()) << " voxels, background "
-            << filter->GetBackgroundValue() << "\n\n"
+            << GetHeld(
+                 filter->GetBackgroundValue(), filter->GetOutput()->GetPointData()->GetScalars())
+            << "\n\n"
             << filter->GetSummary() << "\n\n";
 }
 
@@ -234,24 +239,8 @@ Volume ReadReference(const Options& options, const Volume& volume, Messages& mes
   return reference;
 }
 
-// Throws a Failure if there is no numeric point array. Sets the active scalars if there are none,
-// because all later steps need scalars.
-void CheckValues(vtkImageData* image, const std::string& path)
-{
-  vtkPointData* arrays = image->GetPointData();
-  vtkDataArray* first = FindNumbers(arrays);
-  if (!first)
-  {
-    throw Failure("cannot use " + path + ": its voxels have no numeric array");
-  }
-  if (!arrays->GetScalars())
-  {
-    arrays->SetScalars(first);
-  }
-}
-
 // Integers hold no NaN, and 0 may be tissue.
-void CheckBackground(const Options& options, vtkDataArray* scalars)
+void CheckBackground(const Options& options, vtkDataArray* scalars, Messages& messages)
 {
   const int type = scalars->GetDataType();
   if (options.Background && std::isnan(*options.Background) && type != VTK_FLOAT &&
@@ -259,6 +248,13 @@ void CheckBackground(const Options& options, vtkDataArray* scalars)
   {
     throw Failure("--background nan needs a volume of real numbers, and the values of " +
       options.Volume + " are of the type " + scalars->GetDataTypeAsString());
+  }
+  if (options.Background && GetHeld(*options.Background, scalars) != *options.Background &&
+    !std::isnan(*options.Background))
+  {
+    messages.Warn(MakeText("--background ", *options.Background, ": the values of ", options.Volume,
+      " are integers from ", scalars->GetDataTypeMin(), " to ", scalars->GetDataTypeMax(),
+      ". The background is ", GetHeld(*options.Background, scalars), "."));
   }
 }
 
@@ -299,8 +295,8 @@ void DeformVolume(const Options& options, Messages& messages)
   const Stopwatch reading;
   const ReadingOptions readingOptions{ options.FileCoordinates, options.Frame };
   Volume volume = ReadVolume(options.Volume, readingOptions, messages, !options.Quiet);
-  CheckValues(volume.Image, options.Volume);
-  CheckBackground(options, volume.Image->GetPointData()->GetScalars());
+  ChooseScalars(volume.Image, options.Volume);
+  CheckBackground(options, volume.Image->GetPointData()->GetScalars(), messages);
   volume.Axes =
     ResolveSpace("--volume-space", options.VolumeSpace, options.Volume, volume.Axes, messages);
   const LabelVolume labels(options, volume, messages);

@@ -11,6 +11,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <vtkDataArray.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <initializer_list>
@@ -325,7 +327,8 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->capture_default_str()
     ->check(CLI::Range(1.0, 100.0));
   tetgen.Add("--tetgen-executable", options.TetGenExecutable, "FILE",
-    "TetGen program [the program that was found when deform-volume was built]");
+    "TetGen program [the environment variable DEFORMVOLUME_TETGEN, or else the program that was "
+    "found when deform-volume was built, or else tetgen in PATH]");
 }
 
 /// Makes options that have no effect without another option an error.
@@ -467,6 +470,13 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
     "to its side]");
   group.AddFlag("-q,--quiet", options.Quiet, "Print only warnings and errors");
 }
+}
+
+bool Options::AreLabels(vtkDataArray* array) const
+{
+  const std::vector<std::string>& names = this->CategoricalArrays;
+  return this->Labels ||
+    (array->GetName() && std::find(names.begin(), names.end(), array->GetName()) != names.end());
 }
 
 std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+class vtkDataArray;
+
 /// The options of the command line. Lengths are in the world units of the volume.
 struct Options
 {
@@ -95,6 +97,8 @@ struct Options
       !this->InverseFields.empty() || !this->PointsOutputs.empty() || !this->Image.empty() ||
       !this->Movie.empty();
   }
+  /// Whether an array holds labels, by --labels or --categorical.
+  bool AreLabels(vtkDataArray* array) const;
   bool HasTools() const { return !this->Cuts.empty() || !this->Carvings.empty(); }
   /// Whether --cut cuts the mesh of a model instead of the volume.
   bool CutsMesh() const { return !this->Cuts.empty() && this->HasElasticModel(); }

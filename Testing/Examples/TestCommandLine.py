@@ -286,6 +286,20 @@ call(program, path("in.vti"), *lattice, *push, "-o", path("labels.vti"), "--labe
 labels = get_values(read_vti(path("labels.vti")), "Values")
 assert set(numpy.unique(labels)) <= set(numpy.unique(before)) | {0}
 
+# TetGen meshes categorical scalars as labels: all that are not 0, however they are numbered.
+parts = make_ball()
+ball_of_labels = get_values(parts) >= 800
+vtk_to_numpy(parts.GetPointData().GetScalars())[:] = numpy.where(ball_of_labels, 1, 0).ravel()
+vtk_to_numpy(parts.GetPointData().GetScalars())[ball_of_labels.ravel().argmax()] = 1000
+write_vti(parts, path("parts.vti"))
+for option in (("--labels",), ("--categorical", "Values")):
+    output, _ = call(program, path("parts.vti"), *tetgen, *option, "-o", path("o.vti"))
+    assert f"{ball_of_labels.sum()} voxels in 1 pieces, 0 voxels outside" in output, output
+    os.remove(path("o.vti"))
+output, _ = call(program, path("parts.vti"), *tetgen, "--categorical", "Values", "--isovalue", "1000", "-o", path("o.vti"))
+assert "body       1 voxels" in output, output
+os.remove(path("o.vti"))
+
 # The background is the least value if values can be negative. Labels have the background 0.
 hounsfield = make_ball()
 vtk_to_numpy(hounsfield.GetPointData().GetScalars())[:] -= 1000

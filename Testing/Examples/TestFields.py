@@ -219,6 +219,23 @@ fails_nifti("perpendicular", single, field @ numpy.array(
     [[1, 0.3, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]]), 1006)
 write_meta(path("wrong.mha"), single[..., :2], in_lps)
 fails("2 components", "wrong.mha")
+for unit, name in (("cm", "cm"), ("um", "um")):
+    write_meta(path("wrong.mha"), single, in_lps, extra=f"DistanceUnits = {unit}\n")
+    fails(f"its unit of length is {name}", "wrong.mha")
+write_nrrd(path("wrong.nrrd"), single, in_lps, extra='space units: "cm" "cm" "cm"\n')
+fails("its unit of length is cm", "wrong.nrrd")
+# Two time steps.
+for name, kind, header in (
+        ("time.nrrd", "list", "NRRD0005\ntype: float\ndimension: 5\nspace: left-posterior-superior\nsizes: 3 7 6 5 2\n"
+         "space directions: none (7,0,0) (0,8,0) (0,0,11) none\nkinds: vector domain domain domain list\n"
+         "endian: little\nencoding: raw\nspace origin: (0,0,0)\n\n"),
+        ("time.mha", "", "ObjectType = Image\nNDims = 4\nBinaryData = True\nElementNumberOfChannels = 3\n"
+         "DimSize = 7 6 5 2\nElementType = MET_FLOAT\nElementDataFile = LOCAL\n")):
+    with open(path(name), "wb") as file:
+        file.write(header.encode() + bytes(2 * single.nbytes))
+    fails("it varies in time, with 2 time steps. Extract one time step", name)
+    Messages.fails(program, 1, "it varies in time, with 2 time steps", path("volume.nii.gz"), "--transform", path(name),
+                   "-o", path("no.vti"))
 write_nrrd(path("wrong.nrrd"), single, in_lps, space="scanner-xyz")
 fails("right-anterior-superior", "wrong.nrrd")
 _, errors = call(program, path("volume.vti"), "--field", path("f.vti"), "--field-space", "lps", "-o",

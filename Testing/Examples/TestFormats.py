@@ -10,6 +10,7 @@ import struct
 import numpy
 import Readers
 from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
+from vtkmodules.vtkCommonCore import vtkIdTypeArray
 from vtkmodules.vtkCommonDataModel import vtkDataSetAttributes, vtkImageData
 
 program, path = begin_test("Formats")
@@ -131,6 +132,78 @@ single.SetOrigin(corner)
 write_vti(single, path("single.vti"))
 call(program, path("in.vti"), *still, "-o", path("e.vti"), "--reference", path("single.vti"), "--quiet")
 same(read_vti(path("e.vti")), values[9:10], get_matrix(single))
+
+# Numbers of the type vtkIdType become 64-bit integers.
+numbers = vtkIdTypeArray()
+numbers.SetName("Ids")
+for number in range(values.size):
+    numbers.InsertNextValue(number - 7)
+ids = vtkImageData()
+ids.CopyStructure(volume)
+ids.GetPointData().SetScalars(numbers)
+write_vti(ids, path("ids.vti"))
+for name in ("ids.nii", "ids.nii.gz", "ids.mha"):
+    convert("ids.vti", name)
+    same(convert(name, "e.vti"), (numpy.arange(values.size) - 7).reshape(values.shape), matrix)
+with open(path("ids.nii"), "rb") as file:
+    assert struct.unpack_from("<h", file.read(), 70) == (1024,), "the type is not INT64"
+
+# Lengths of NRRD and MetaImage files in other units become mm.
+diagonal = numpy.array([[1.0, 0, 0, 10], [0, 2, 0, 20], [0, 0, 3, -30]])
+
+
+def write_nrrd(name, *lines):
+    header = ["NRRD0005", "type: short", "dimension: 3", "sizes: 25 22 19", "endian: little", "encoding: raw", *lines]
+    with open(path(name), "wb") as file:
+        file.write("\n".join(header).encode() + b"\n\n" + values.astype("<i2").tobytes())
+
+
+def write_world(name, *units):
+    write_nrrd(name, "space: left-posterior-superior", "space directions: (1,0,0) (0,2,0) (0,0,3)",
+               "space origin: (10,20,-30)", *(["space units: " + " ".join(f'"{unit}"' for unit in units)] if units else []))
+
+
+def convert_quietly(name):
+    """Returns the image of a file, and the warnings."""
+    _, errors = call(program, path(name), "--carve", "sphere:-9,-9,-9,0.001", "-o", path("e.vti"), "--quiet", *(
+        "--bounds", "volume"))
+    return read_vti(path("e.vti")), errors
+
+
+for unit, length in (("", 1), ("mm", 1), ("millimeter", 1), ("m", 1000), ("meters", 1000), ("cm", 10), ("um", 1e-3),
+                     ("\u00b5m", 1e-3), ("\u03bcm", 1e-3), ("microns", 1e-3), ("micrometre", 1e-3), ("nm", 1e-6)):
+    write_world("unit.nrrd", unit, unit, unit)
+    image, errors = convert_quietly("unit.nrrd")
+    same(image, values, diagonal * length)
+    assert "unit" not in errors.replace("unit.nrrd", ""), errors
+write_world("unit.nrrd")
+same(convert_quietly("unit.nrrd")[0], values, diagonal)
+write_world("unit.nrrd", "furlong", "furlong", "furlong")
+image, errors = convert_quietly("unit.nrrd")
+same(image, values, diagonal)
+assert f'The unit of length of {path("unit.nrrd")}, "furlong", is not known' in errors, errors
+write_world("unit.nrrd", "cm", "cm", "cm")
+call(program, path("unit.nrrd"), *still, "-o", path("f.vti"), "--quiet", "--bounds", "volume", "--file-coordinates")
+same(read_vti(path("f.vti")), values, diagonal)
+for unit, length in (("mm", 1), ("cm", 10), ("um", 1e-3)):
+    with open(path("unit.mha"), "wb") as file:
+        file.write(f"ObjectType = Image\nNDims = 3\nBinaryData = True\nOffset = 10 20 -30\nElementSpacing = 1 2 3\n"
+                   f"DistanceUnits = {unit}\nDimSize = 25 22 19\nElementType = MET_SHORT\nElementDataFile = LOCAL\n"
+                   .encode() + values.astype("<i2").tobytes())
+    same(convert_quietly("unit.mha")[0], values, diagonal * length)
+
+# The grid of an NRRD file without directions. Minima and maxima are at the borders of the outermost voxels (cell), or
+# at their centers (node).
+write_nrrd("axes.nrrd", "spacings: 1 2 3", 'units: "cm" "cm" "cm"')
+same(convert_quietly("axes.nrrd")[0], values, 10 * numpy.diag([1.0, 2, 3, 0])[:3])
+for centers, counts, shift in (("", (25, 22, 19), 0.5), ("cell cell cell", (25, 22, 19), 0.5),
+                               ("node node node", (24, 21, 18), 0.0)):
+    write_nrrd("axes.nrrd", "axis mins: 10 20 -30", "axis maxs: " + " ".join(
+        str(first + step * count) for first, step, count in zip((10, 20, -30), (0.5, 2, 3), counts)),
+               *([f"centers: {centers}"] if centers else []))
+    spacing = numpy.array([0.5, 2, 3])
+    same(convert_quietly("axes.nrrd")[0], values,
+         numpy.column_stack([numpy.diag(spacing), numpy.array([10, 20, -30]) + shift * spacing]))
 
 # --file-coordinates: the output has the coordinates that VTK's reader gives for a NIfTI file.
 call(program, path("a.nii.gz"), *still, "-o", path("f.vti"), "--quiet", "--bounds", "volume",

@@ -17,7 +17,7 @@ from MeshFiles import (
     to_vtk,
     write,
 )
-from Volumes import begin_test, call, make_ball, write_vti
+from Volumes import begin_test, call, make_ball, read_vti, write_vti
 from vtkmodules.vtkCommonDataModel import (
     VTK_BEZIER_TETRAHEDRON,
     VTK_CONVEX_POINT_SET,
@@ -127,6 +127,38 @@ def check_volumes():
     call(program, path("inactive.vti"), "--tetgen", "--edge-length", "9", *push, "-o",
          path("inactive-out.vti"))
     fails(1, ["no such array", "Values"], *mesh, "--categorical", "Labels")
+    # Masks are not the values, also if they are the first array or the scalars.
+    for mask, kind in (("vtkGhostType", numpy.uint8), ("vtkValidPointMask", numpy.int8),
+                       ("BoundaryDistance", numpy.float32)):
+        for is_active in (False, True):
+            image = vtkImageData()
+            image.CopyStructure(volume)
+            ones = numpy.full(volume.GetNumberOfPoints(), mask != "vtkGhostType", kind)
+            image.GetPointData().AddArray(to_vtk(mask, ones))
+            image.GetPointData().AddArray(volume.GetPointData().GetScalars())
+            image.GetPointData().SetActiveScalars(mask if is_active else None)
+            write_vti(image, path("masked.vti"))
+            call(program, path("masked.vti"), *lattice, *push, "-q", "-o", path("masked.mha"))
+            call(program, path("masked.mha"), *lattice, *push, "-q", "-o", path("masked-out.vti"))
+            assert read_vti(path("masked-out.vti")).GetPointData().GetScalars().GetRange()[1] > 800
+        image.GetPointData().RemoveArray("Values")
+        write_vti(image, path("only-mask.vti"))
+        fails(1, "no numeric array", *lattice, *push, source="only-mask.vti")
+
+
+def check_backgrounds():
+    for given, written in (("-1000", "0"), ("300", "255"), ("7.5", "8")):
+        image = make_ball()
+        image.GetPointData().SetScalars(to_vtk("Bytes", numpy.zeros(image.GetNumberOfPoints(), numpy.uint8)))
+        write_vti(image, path("bytes.vti"))
+        arguments = (path("bytes.vti"), *lattice, *push, "--padding", "1", "--background", given, "-o", path("bytes-o.vti"))
+        output, errors = call(program, *arguments)
+        assert f"--background {given}: " in errors and f"The background is {written}." in errors, errors
+        assert f"background {written}\n" in output, output
+        assert read_vti(path("bytes-o.vti")).GetPointData().GetScalars().GetValue(0) == int(written)
+        Messages.warns(program, "integers from 0 to 255", *arguments)
+    _, errors = call(program, path("bytes.vti"), *lattice, *push, "--background", "7", "-o", path("bytes-o.vti"))
+    assert "--background" not in errors, errors
 
 
 def check_fields():
@@ -288,6 +320,7 @@ def check_permission():
 
 check_resamplers()
 check_volumes()
+check_backgrounds()
 check_fields()
 check_meshes()
 check_sheets()

@@ -58,6 +58,12 @@ std::string FindWrongShape(vtkNIFTIImageHeader* header)
                    : "it holds one number for each voxel, and no vectors";
 }
 
+[[noreturn]] void RefuseUnit(const std::string& unit, const std::string& what)
+{
+  throw Failure(what + ": its unit of length is " + unit +
+    ", so the unit of its vectors is not known. Write the file in mm");
+}
+
 /// Whether the vectors of a NIfTI file point right, anterior and superior. Throws a Failure if the
 /// file is not a displacement field in mm.
 bool IsRightAnterior(vtkNIFTIImageHeader* header, const std::string& what)
@@ -65,9 +71,7 @@ bool IsRightAnterior(vtkNIFTIImageHeader* header, const std::string& what)
   const int unit = header->GetXYZTUnits() & vtkNIFTIImageHeader::UnitsSpace;
   if (unit == vtkNIFTIImageHeader::UnitsMeter || unit == vtkNIFTIImageHeader::UnitsMicron)
   {
-    throw Failure(what + ": its unit of length is " +
-      (unit == vtkNIFTIImageHeader::UnitsMeter ? "the metre" : "the micrometre") +
-      ", so the unit of its vectors is not known. Write the file in mm");
+    RefuseUnit(unit == vtkNIFTIImageHeader::UnitsMeter ? "the metre" : "the micrometre", what);
   }
   const auto intent = static_cast<int>(header->GetIntentCode());
   const char* const name = header->GetIntentName();
@@ -269,6 +273,10 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
   {
     matrix->DeepCopy(field.MeasurementFrame);
   }
+  if (!field.Unit.empty())
+  {
+    RefuseUnit(field.Unit, what);
+  }
   CheckKind(field, path, options.IsInverse, messages);
   vtkDataArray* stored = image->GetPointData()->GetScalars();
   const int components = stored ? stored->GetNumberOfComponents() : 0;
@@ -276,6 +284,11 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
   {
     throw Failure(what + ": it has " + std::to_string(components) +
       " components for each voxel, but displacements have three");
+  }
+  if (field.NumberOfFrames > 1)
+  {
+    throw Failure(what + ": it varies in time, with " + std::to_string(field.NumberOfFrames) +
+      " time steps. Extract one time step");
   }
   if (field.Axes == WorldAxes::Unknown && options.Space.empty())
   {

@@ -14,10 +14,12 @@
 #include "VTKWriting.h"
 
 #include <vtkBoundingBox.h>
+#include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
 #include <vtkMath.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkTetGenMesher.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
@@ -62,7 +64,9 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
   }
   vtkNew<vtkTetGenMesher> mesher;
   mesher->SetInputData(volume);
-  if (options.Labels)
+  const bool isOfLabels =
+    !options.Isovalue && options.AreLabels(volume->GetPointData()->GetScalars());
+  if (isOfLabels)
   {
     mesher->SetBodyModeToLabels();
   }
@@ -98,7 +102,7 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
     " voxels outside the mesh; ", mesher->GetNumberOfSpeckVoxels(), " voxels in specks left out");
   deformation.Edges.push_back(MakeText(std::setprecision(3), "about ",
     mesher->GetUsedTargetEdgeLength(), options.Pushes.empty() ? "" : " away from pushes"));
-  if (!options.Labels)
+  if (!isOfLabels)
   {
     deformation.Isovalue = mesher->GetUsedIsovalue();
   }

@@ -227,7 +227,8 @@ bool DICOMFile::GetNumbers(std::uint32_t tag, int count, double* numbers) const
   while (std::getline(text, part, '\\'))
   {
     std::istringstream number(part);
-    if (read == count || !(number >> numbers[read]) || !std::isfinite(numbers[read]))
+    if (read == count || !(number >> numbers[read]) || !std::isfinite(numbers[read]) ||
+      !(number >> std::ws).eof())
     {
       return false;
     }

@@ -23,6 +23,11 @@ vtkSmartPointer<vtkDataArray> GetFrame(vtkDataArray* all, int frame, vtkIdType v
   one->InsertTuples(0, voxels, frame * voxels, all);
   return one;
 }
+
+double GetMillimetres(MET_DistanceUnitsEnumType unit)
+{
+  return unit == MET_DISTANCE_UNITS_UM ? 0.001 : unit == MET_DISTANCE_UNITS_CM ? 10.0 : 1.0;
+}
 }
 
 Volume ReadMetaImage(const std::string& path, const ReadingOptions& options, Messages& messages)
@@ -51,6 +56,13 @@ Volume ReadMetaImage(const std::string& path, const ReadingOptions& options, Mes
     throw Failure("cannot read " + path + ": " + DataMissing);
   }
   Volume volume;
+  volume.NumberOfFrames = frames;
+  const double factor =
+    options.FileCoordinates ? 1.0 : GetMillimetres(io->GetMetaImagePointer()->DistanceUnits());
+  if (factor != 1.0)
+  {
+    volume.Unit = io->GetMetaImagePointer()->DistanceUnitsName();
+  }
   volume.Image = vtkSmartPointer<vtkImageData>::New();
   volume.Image->SetDimensions(getSize(0), getSize(1), getSize(2));
   if (frames > 1)
@@ -63,13 +75,13 @@ Volume ReadMetaImage(const std::string& path, const ReadingOptions& options, Mes
   vtkNew<vtkMatrix4x4> place;
   for (unsigned int column = 0; column < std::min(axes, 3U); ++column)
   {
-    spacing[column] = io->GetSpacing(column);
+    spacing[column] = factor * io->GetSpacing(column);
     const std::vector<double> direction = io->GetDirection(column);
     for (unsigned int row = 0; row < std::min(axes, 3U) && !options.FileCoordinates; ++row)
     {
       place->SetElement(row, column, direction[row]);
     }
-    place->SetElement(column, 3, io->GetOrigin(column));
+    place->SetElement(column, 3, factor * io->GetOrigin(column));
   }
   volume.Image->SetSpacing(spacing);
   SetAxes(volume.Image, place, path, messages);

@@ -4,7 +4,9 @@
 #include "NRRDReading.h"
 
 #include "Failure.h"
+#include "Files.h"
 #include "ImageAxes.h"
+#include "Messages.h"
 
 #include <NrrdIO.h>
 
@@ -18,6 +20,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace
@@ -72,9 +75,13 @@ public:
       std::all_of(this->SpaceAxes.begin(), this->SpaceAxes.end(),
         [this](unsigned int axis) { return this->HasDirection(axis); });
   }
+  // The unit of length on an axis of the space or, without directions, on an axis of the file; ""
+  // if the header has none.
+  std::string GetUnit(unsigned int axis) const;
   // Sets the spacing of the image. place: its columns become the directions, of unit length, and
-  // the position of the first voxel, in the space of the file.
-  void GetPlace(vtkImageData* image, vtkMatrix4x4* place) const;
+  // the position of the first voxel, in the space of the file. factors: by which lengths on the
+  // axes of GetUnit() are multiplied.
+  void GetPlace(vtkImageData* image, vtkMatrix4x4* place, const double factors[3]) const;
   // The matrix from components of vectors to the space of the file. Unchanged if the file has none.
   void GetMeasurementFrame(vtkMatrix3x3* matrix) const;
   std::map<std::string, std::string> GetFields() const;
@@ -104,6 +111,7 @@ private:
     return this->Data->spaceDim >= 3 && std::isfinite(this->Data->axis[axis].spaceDirection[0]);
   }
   bool IsOfTime(unsigned int axis) const;
+  double GetSpacing(unsigned int axis) const;
 
   const std::string Path;
   Nrrd* const Data = nrrdNew();
@@ -256,7 +264,32 @@ WorldAxes NRRDFile::GetAxes() const
   }
 }
 
-void NRRDFile::GetPlace(vtkImageData* image, vtkMatrix4x4* place) const
+std::string NRRDFile::GetUnit(unsigned int axis) const
+{
+  if (!this->HasDirections() && axis >= this->SpaceAxes.size())
+  {
+    return "";
+  }
+  const char* const unit = this->HasDirections() ? this->Data->spaceUnits[axis]
+                                                 : this->Data->axis[this->SpaceAxes[axis]].units;
+  return unit ? unit : "";
+}
+
+// The spacing on an axis of a file without directions: that of the header, or that of its minimum
+// and maximum. They are at the borders of the first and the last voxel, or at their centers.
+double NRRDFile::GetSpacing(unsigned int axis) const
+{
+  const NrrdAxisInfo& info = this->Data->axis[axis];
+  if (!std::isnan(info.spacing))
+  {
+    return info.spacing;
+  }
+  const double steps = static_cast<double>(info.size) - (info.center == nrrdCenterNode ? 1.0 : 0.0);
+  const double spacing = (info.max - info.min) / steps;
+  return std::isfinite(spacing) && spacing != 0.0 ? spacing : 1.0;
+}
+
+void NRRDFile::GetPlace(vtkImageData* image, vtkMatrix4x4* place, const double factors[3]) const
 {
   double spacing[3] = { 1.0, 1.0, 1.0 };
   double origin[NRRD_DIM_MAX] = {};
@@ -266,7 +299,11 @@ void NRRDFile::GetPlace(vtkImageData* image, vtkMatrix4x4* place) const
     for (int column = 0; column < 3; ++column)
     {
       double direction[3];
-      std::copy_n(this->Data->axis[this->SpaceAxes[column]].spaceDirection, 3, direction);
+      for (int row = 0; row < 3; ++row)
+      {
+        direction[row] =
+          factors[row] * this->Data->axis[this->SpaceAxes[column]].spaceDirection[row];
+      }
       spacing[column] = vtkMath::Normalize(direction);
       for (int row = 0; row < 3; ++row)
       {
@@ -279,15 +316,14 @@ void NRRDFile::GetPlace(vtkImageData* image, vtkMatrix4x4* place) const
   {
     for (unsigned int axis = 0; axis < axes; ++axis)
     {
-      const double length = this->Data->axis[this->SpaceAxes[axis]].spacing;
-      spacing[axis] = std::isnan(length) ? 1.0 : length;
+      spacing[axis] = factors[axis] * this->GetSpacing(this->SpaceAxes[axis]);
     }
     std::vector<unsigned int> spaceAxes = this->SpaceAxes;
     nrrdOriginCalculate(this->Data, spaceAxes.data(), axes, nrrdCenterCell, origin);
   }
   for (int row = 0; row < 3; ++row)
   {
-    place->SetElement(row, 3, std::isnan(origin[row]) ? 0.0 : origin[row]);
+    place->SetElement(row, 3, std::isnan(origin[row]) ? 0.0 : factors[row] * origin[row]);
   }
   image->SetSpacing(spacing);
 }
@@ -319,6 +355,60 @@ std::map<std::string, std::string> NRRDFile::GetFields() const
 }
 }
 
+namespace
+{
+// Returns a unit of length in mm; 0 if the unit is not known.
+double GetMillimetres(const std::string& unit)
+{
+  const std::pair<double, std::vector<const char*>> units[] = {
+    { 1.0, { "", "mm", "millimeter", "millimeters", "millimetre", "millimetres" } },
+    { 1000.0, { "m", "meter", "meters", "metre", "metres" } },
+    { 10.0, { "cm", "centimeter", "centimeters", "centimetre", "centimetres" } },
+    // The sign is that of micro or the Greek letter.
+    { 0.001,
+      { "um", "\u00b5m", "\u03bcm", "micron", "microns", "micrometer", "micrometers", "micrometre",
+        "micrometres" } },
+    { 1e-6, { "nm", "nanometer", "nanometers", "nanometre", "nanometres" } },
+  };
+  const std::string text = Trim(unit);
+  for (const auto& [length, names] : units)
+  {
+    if (std::find(names.begin(), names.end(), text) != names.end())
+    {
+      return length;
+    }
+  }
+  return 0.0;
+}
+
+// Sets the factors that convert the lengths of a file to mm, and the unit of the volume. Lengths of
+// an unknown unit are not converted, with a warning.
+void FindFactors(const NRRDFile& file, const std::string& path, double factors[3], Volume& volume,
+  Messages& messages)
+{
+  bool isWarned = false;
+  for (unsigned int axis = 0; axis < 3; ++axis)
+  {
+    const std::string unit = file.GetUnit(axis);
+    factors[axis] = GetMillimetres(unit);
+    if (factors[axis] == 0.0)
+    {
+      factors[axis] = 1.0;
+      if (!isWarned)
+      {
+        messages.Warn("The unit of length of " + path + ", \"" + unit +
+          "\", is not known. Its coordinates are not converted to mm.");
+      }
+      isWarned = true;
+    }
+    else if (factors[axis] != 1.0)
+    {
+      volume.Unit = unit;
+    }
+  }
+}
+}
+
 Volume ReadNRRD(const std::string& path, const ReadingOptions& options, Messages& messages)
 {
   const NRRDFile file(path);
@@ -327,8 +417,14 @@ Volume ReadNRRD(const std::string& path, const ReadingOptions& options, Messages
   volume.Fields = file.GetFields();
   volume.MeasurementFrame = vtkSmartPointer<vtkMatrix3x3>::New();
   file.GetMeasurementFrame(volume.MeasurementFrame);
+  volume.NumberOfFrames = file.GetFrames();
+  double factors[3] = { 1.0, 1.0, 1.0 };
+  if (!options.FileCoordinates)
+  {
+    FindFactors(file, path, factors, volume, messages);
+  }
   vtkNew<vtkMatrix4x4> place;
-  file.GetPlace(volume.Image, place);
+  file.GetPlace(volume.Image, place, factors);
   if (options.FileCoordinates)
   {
     for (int i = 0; i < 9; ++i)

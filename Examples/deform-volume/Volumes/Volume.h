@@ -43,6 +43,11 @@ struct Volume
 {
   vtkSmartPointer<vtkImageData> Image;
   WorldAxes Axes = WorldAxes::Unknown;
+  /// Number of time steps in the file.
+  int NumberOfFrames = 1;
+  /// The unit of length in the file, if coordinates were converted from it to mm; "" if they were
+  /// not. Vectors are not converted. Not set for NIfTI files.
+  std::string Unit;
   /// The forms of a NIfTI file.
   NIfTIForms Forms;
   /// The intent code (NIFTI_INTENT) for writing a NIfTI file; 0: none.

@@ -22,16 +22,42 @@
 #include <algorithm>
 #include <new>
 
+namespace
+{
+// Whether an array says which voxels are used, and holds no values of the volume.
+bool IsMask(vtkDataArray* array)
+{
+  const std::string name = array->GetName() ? array->GetName() : "";
+  return name == vtkDataSetAttributes::GhostArrayName() || name == "vtkValidPointMask" ||
+    name == "BoundaryDistance" || name == "CutDistance";
+}
+}
+
 vtkDataArray* FindNumbers(vtkDataSetAttributes* arrays)
 {
   for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
   {
-    if (vtkDataArray* array = arrays->GetArray(i))
+    vtkDataArray* const array = arrays->GetArray(i);
+    if (array && !IsMask(array))
     {
       return array;
     }
   }
   return nullptr;
+}
+
+void ChooseScalars(vtkImageData* image, const std::string& path)
+{
+  vtkPointData* const arrays = image->GetPointData();
+  vtkDataArray* const first = FindNumbers(arrays);
+  if (!first)
+  {
+    throw Failure("cannot use " + path + ": its voxels have no numeric array");
+  }
+  if (!arrays->GetScalars() || IsMask(arrays->GetScalars()))
+  {
+    arrays->SetScalars(first);
+  }
 }
 
 namespace

@@ -44,8 +44,14 @@ inline constexpr const char* ReadFormats = HasITK
 Volume ReadVolume(
   const std::string& path, const ReadingOptions& options, Messages& messages, bool showProgress);
 
-/// Returns the first numeric array; null if there is none.
+/// Returns the first numeric array that is no mask (vtkGhostType, vtkValidPointMask,
+/// BoundaryDistance, CutDistance); null if there is none.
 vtkDataArray* FindNumbers(vtkDataSetAttributes* arrays);
+
+/// Makes the array of FindNumbers() the active scalars if there are none, or if they are a mask,
+/// because all later steps need scalars. path: the file of the image. Throws a Failure if there is
+/// no such array.
+void ChooseScalars(vtkImageData* image, const std::string& path);
 
 /// Returns the index of the frame to read. frames: number of frames in the file. Throws a Failure
 /// if ReadingOptions::Frame is out of range, or if it is not set and there are several frames.

@@ -206,10 +206,24 @@ int GetIntentCode(const Volume& volume, vtkDataArray* values)
   return ofFile != 0 ? ofFile : NIfTIIntentVector;
 }
 
+// Replaces scalars of the type vtkIdType, which the writer of VTK does not know.
+void ConvertIds(vtkImageData* image)
+{
+  vtkDataArray* const ids = image->GetPointData()->GetScalars();
+  if (ids->GetDataType() == VTK_ID_TYPE)
+  {
+    const auto values =
+      vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(VTK_LONG_LONG));
+    values->DeepCopy(ids);
+    image->GetPointData()->SetScalars(values);
+  }
+}
+
 void WriteNIfTI(
   const Volume& volume, const std::string& path, Messages& messages, bool showProgress)
 {
   const vtkSmartPointer<vtkImageData> image = MoveExtentToZero(volume.Image);
+  ConvertIds(image);
   vtkDataArray* const values = image->GetPointData()->GetScalars();
   const bool isReal = values->GetDataType() == VTK_FLOAT || values->GetDataType() == VTK_DOUBLE;
   if (values->GetNumberOfComponents() == 2 && isReal)

@@ -255,6 +255,15 @@ add_wrong("table", "table of values (modality LUT", change=set_fields(ModalityLU
 add_wrong("signed12", "inverted values (MONOCHROME1) of 12 bits", change=set_fields(
     PhotometricInterpretation="MONOCHROME1", BitsStored=12, HighBit=11))
 add_wrong("nan", "no position", change=lambda data, number: data.add_new(0x00200032, "UN", rb"nan\0\0 "))
+# Numbers with a comma in place of the decimal point, which pydicom does not write.
+for name, words, fields, number in (("comma", "no valid pixel spacing", {"PixelSpacing": [1.25, 1]}, b"1.25\\1"),
+                                    ("comma-position", "no position", {"ImagePositionPatient": [0, 0, 1.25]}, b"1.25")):
+    add_wrong(name, words, change=set_fields(2, **fields))
+    with open(path(name, "002.dcm"), "rb+") as file:
+        content = file.read()
+        assert content.count(number) == 1, name
+        file.seek(0)
+        file.write(content.replace(number, number.replace(b".", b",")))
 add_wrong("sheared-rows", "sheared by 0.57", change=set_fields(
     ImageOrientationPatient=[1, 0, 0, 0.01, 1, 0]))
 add_wrong("one", "it has one slice, 000.dcm", count=1)

@@ -45,8 +45,9 @@ def write_nifti(path, vectors, matrix, intent=1007, name="", shape=None, order="
         file.write(gzip.compress(data) if path.endswith(".gz") else data)
 
 
-def write_meta(path, vectors, matrix, order="<", compressed=False):
-    """matrix: index to LPS. A .mha file contains the data, a .mhd file refers to a second file with the data."""
+def write_meta(path, vectors, matrix, order="<", compressed=False, extra=""):
+    """matrix: index to LPS; extra: further lines of the header. A .mha file contains the data, a .mhd file
+    refers to a second file with the data."""
     spacing = numpy.linalg.norm(matrix[:, :3], axis=0)
     directions = (matrix[:, :3] / spacing).T.ravel()
     data = vectors.astype(vectors.dtype.newbyteorder(order)).tobytes()
@@ -63,7 +64,7 @@ def write_meta(path, vectors, matrix, order="<", compressed=False):
               f"ElementSpacing = {words(spacing)}\n"
               f"DimSize = {' '.join(str(n) for n in vectors.shape[2::-1])}\n"
               f"ElementNumberOfChannels = {vectors.shape[3]}\n"
-              f"ElementType = {types[vectors.dtype.name][2]}\nElementDataFile = {name}\n").encode()
+              f"{extra}ElementType = {types[vectors.dtype.name][2]}\nElementDataFile = {name}\n").encode()
     with open(path, "wb") as file:
         file.write(header + (data if name == "LOCAL" else b""))
     if name != "LOCAL":
