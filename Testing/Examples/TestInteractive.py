@@ -11,6 +11,9 @@ import numpy
 from Baselines import read_picture
 from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 from WindowEvents import WindowEvents
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkStringArray
+from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOImage import vtkNIFTIImageWriter
 
 program, script, path = begin_test("Interactive")
@@ -50,6 +53,27 @@ def replay(name, *arguments):
     return read_vti(path(name + ".vti"))
 
 
+rest = replay("rest")
+# Text and masks before the values of a volume, or as its scalars, are not the values.
+text = vtkStringArray()
+text.SetName("Text")
+text.SetNumberOfValues(ball.GetNumberOfPoints())
+ghosts = numpy_to_vtk(numpy.zeros(ball.GetNumberOfPoints(), numpy.uint8), deep=True)
+ghosts.SetName("vtkGhostType")
+for first, scalars in ((text, None), (ghosts, None), (ghosts, "vtkGhostType")):
+    image = vtkImageData()
+    image.CopyStructure(ball)
+    image.GetPointData().AddArray(first)
+    write_vti(image, path("none.vti"))
+    _, errors = call(program, path("none.vti"), "--replay", path("rest.log"), code=1, quiet=True)
+    assert errors == f"deform-interactive: cannot use {path('none.vti')}: its voxels have no numeric array\n", errors
+    image.GetPointData().AddArray(ball.GetPointData().GetScalars())
+    image.GetPointData().SetActiveScalars(scalars)
+    write_vti(image, path("first.vti"))
+    call(program, path("first.vti"), "--size", "200,200", "--replay", path("rest.log"), "--output", path("first-out.vti"))
+    assert numpy.array_equal(get_values(read_vti(path("first-out.vti")), "Values"), get_values(rest, "Values"))
+
+
 def are_equal(one, other):
     return all(numpy.array_equal(get_values(one, name), get_values(other, name))
                for name in (None, "vtkValidPointMask"))
@@ -60,7 +84,6 @@ def count_events(name):
         return collections.Counter(re.findall('do="([A-Za-z]+)', file.read()))
 
 
-rest = replay("rest")
 assert rest.GetExtent() == (-8, 38, -8, 35, -8, 32), rest.GetExtent()
 covered = get_values(rest, "vtkValidPointMask") != 0
 assert numpy.array_equal(get_values(rest)[covered], get_values(ball).ravel())
