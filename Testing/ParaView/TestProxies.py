@@ -154,6 +154,36 @@ def check_words(proxy):
                 check(entry.get("name") in names, f"{label}: requires the unknown {entry.get('name')}")
 
 
+def is_enabled(prop, settings):
+    """Whether the panel enables a property, by its decorators. settings: the values of the others, as texts."""
+
+    def evaluate(element):
+        if element.get("type") == "CompositeDecorator":
+            expression = element.find("Expression")
+            parts = [evaluate(part) for part in expression]
+            return any(parts) if expression.get("type") == "or" else all(parts)
+        if element.get("mode") != "enabled_state":
+            return True
+        is_equal = settings[element.get("property")] == element.get("value")
+        return is_equal != (element.get("inverse") == "1")
+
+    return all(evaluate(decorator) for decorator in prop.findall("Hints/PropertyWidgetDecorator"))
+
+
+def check_outside_mode(proxies):
+    """Mesh Rasterization has outside modes with inverse fields only."""
+    for proxy in proxies:
+        for prop in properties_of(proxy):
+            if prop.get("name") == "OutsideMode":
+                for resampler, inverse in ((resampler, inverse) for resampler in "02" for inverse in "01"):
+                    enabled = is_enabled(prop, {"Resampler": resampler, "FieldIsInverse": inverse})
+                    check(
+                        enabled == (resampler != "2" or inverse == "1"),
+                        f"{proxy.get('name')}.OutsideMode: enabled is {enabled} with the resampler {resampler} and "
+                        f"FieldIsInverse {inverse}",
+                    )
+
+
 def is_set_by_user(prop):
     """Whether a user sets the property. False for information, buttons, inputs that are connected in the pipeline, and
     removed properties."""
@@ -249,6 +279,7 @@ def main():
             check_words(proxy)
             check_panel(proxy)
             check_values(cls, proxy)
+    check_outside_mode(proxies["vtkDeformVolumeFilter"])
     for failure in failures:
         print(failure)
     return 1 if failures else 0
