@@ -204,10 +204,11 @@ void PrintInputs(const Volume& volume, const LabelVolume& labels, const Deformat
   }
 }
 
-// Returns the number that an array holds in place of a background.
+// Returns the number that an array holds in place of a background. scalars: may be null, as those
+// of a result are if their type cannot be resampled.
 double GetHeld(double background, vtkDataArray* scalars)
 {
-  const int type = scalars->GetDataType();
+  const int type = scalars ? scalars->GetDataType() : VTK_DOUBLE;
   return type == VTK_FLOAT || type == VTK_DOUBLE
     ? background
     : std::clamp(std::nearbyint(background), scalars->GetDataTypeMin(), scalars->GetDataTypeMax());
