@@ -296,7 +296,8 @@ for option in (("--labels",), ("--categorical", "Values")):
     output, _ = call(program, path("parts.vti"), *tetgen, *option, "-o", path("o.vti"))
     assert f"{ball_of_labels.sum()} voxels in 1 pieces, 0 voxels outside" in output, output
     os.remove(path("o.vti"))
-output, _ = call(program, path("parts.vti"), *tetgen, "--categorical", "Values", "--isovalue", "1000", "-o", path("o.vti"))
+output, _ = call(program, path("parts.vti"), *tetgen, "--categorical", "Values", "--isovalue", "1000", "-o",
+                 path("o.vti"))
 assert "body       1 voxels" in output, output
 os.remove(path("o.vti"))
 

@@ -160,7 +160,8 @@ def write_nrrd(name, *lines):
 
 def write_world(name, *units):
     write_nrrd(name, "space: left-posterior-superior", "space directions: (1,0,0) (0,2,0) (0,0,3)",
-               "space origin: (10,20,-30)", *(["space units: " + " ".join(f'"{unit}"' for unit in units)] if units else []))
+               "space origin: (10,20,-30)",
+               *(["space units: " + " ".join(f'"{unit}"' for unit in units)] if units else []))
 
 
 def convert_quietly(name):

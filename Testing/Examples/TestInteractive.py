@@ -70,7 +70,8 @@ for first, scalars in ((text, None), (ghosts, None), (ghosts, "vtkGhostType")):
     image.GetPointData().AddArray(ball.GetPointData().GetScalars())
     image.GetPointData().SetActiveScalars(scalars)
     write_vti(image, path("first.vti"))
-    call(program, path("first.vti"), "--size", "200,200", "--replay", path("rest.log"), "--output", path("first-out.vti"))
+    call(program, path("first.vti"), "--size", "200,200", "--replay", path("rest.log"), "--output",
+         path("first-out.vti"))
     assert numpy.array_equal(get_values(read_vti(path("first-out.vti")), "Values"), get_values(rest, "Values"))
 
 

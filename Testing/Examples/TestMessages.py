@@ -151,7 +151,8 @@ def check_backgrounds():
         image = make_ball()
         image.GetPointData().SetScalars(to_vtk("Bytes", numpy.zeros(image.GetNumberOfPoints(), numpy.uint8)))
         write_vti(image, path("bytes.vti"))
-        arguments = (path("bytes.vti"), *lattice, *push, "--padding", "1", "--background", given, "-o", path("bytes-o.vti"))
+        arguments = (path("bytes.vti"), *lattice, *push, "--padding", "1", "--background", given, "-o",
+                     path("bytes-o.vti"))
         output, errors = call(program, *arguments)
         assert f"--background {given}: " in errors and f"The background is {written}." in errors, errors
         assert f"background {written}\n" in output, output
