@@ -64,8 +64,7 @@ std::string FindFault(vtkNIFTIImageReader* reader)
   if (voxel < 0 || !(volume->GetPointData()->GetScalars()->GetComponent(voxel, 0) >= 1.0))
   {
     return "it has no nose 90 mm to the right, 207 mm to the front and 32 mm above its first "
-           "voxel, "
-           "where ch2.nii.gz has it";
+           "voxel, where ch2.nii.gz has it";
   }
   return "";
 }

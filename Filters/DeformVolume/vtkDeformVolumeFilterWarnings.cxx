@@ -93,7 +93,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfInputs(vtkImageData* volume,
     }
   }
   warnings.insert(deformvolume::DescribeIgnored(source.ShapeParts));
-  warnings.erase(""); // of what there is nothing to say
+  warnings.erase(""); // the functions above return "" if there is nothing to warn of
   using Attributes = vtkDataSetAttributes;
   for (const auto& [role, kind] : { std::pair(Attributes::VECTORS, "vectors"),
          std::pair(Attributes::NORMALS, "normals"), std::pair(Attributes::TENSORS, "tensors") })

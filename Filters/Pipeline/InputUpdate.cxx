@@ -431,7 +431,9 @@ void CheckTimes(int ports, vtkInformationVector** input, vtkInformation* output)
     return;
   }
   const double time = output->Get(Pipeline::UPDATE_TIME_STEP());
-  std::map<int, double> wrong; // times of data, by the port
+  // Times of data that differ from the requested time: by the port, if the port announces the
+  // requested time, or else the times that ports choose.
+  std::map<int, double> wrong;
   std::set<double> fixed;
   for (int port = 0; port < ports; ++port)
   {
@@ -448,10 +450,17 @@ void CheckTimes(int ports, vtkInformationVector** input, vtkInformation* output)
         "on input port " + std::to_string(port), time, info->Get(Pipeline::UPDATE_TIME_STEP()));
     }
     const std::optional<double> found = GetDataTime(info);
-    const bool isOffered = std::find(times.begin(), times.end(), time) != times.end();
-    if (found && *found != time)
+    if (!found || *found == time)
     {
-      isOffered ? void(wrong.emplace(port, *found)) : void(fixed.insert(*found));
+      continue;
+    }
+    if (std::find(times.begin(), times.end(), time) != times.end())
+    {
+      wrong[port] = *found;
+    }
+    else
+    {
+      fixed.insert(*found);
     }
   }
   // If filters lie between the source and the port, only the data show which time the source gave.

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /*
- * Cutting and carving in C: misuse and error messages, undo, and abort. Testing/Cxx/C/TestCEdits.cxx
- * compares all masks and the outputs with those of the filters.
+ * Cutting and carving in C: misuse and error messages, undo, and abort.
+ * Testing/Cxx/C/TestCEdits.cxx compares all masks and the outputs with those of the filters.
  */
 #include "Check.h"
 #include "Cube.h"
@@ -271,7 +271,8 @@ static void TestWrong(void)
   dv_destroy(deformer);
 }
 
-/* Undo and redo change the masks. Edits are kept for the same grid, and removed for another grid. */
+/* Undo and redo change the masks. Edits are kept for the same grid, and removed for another grid.
+ */
 static void TestHistory(void)
 {
   dv_deformer* deformer = MakeDeformer();
