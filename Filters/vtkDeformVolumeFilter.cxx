@@ -182,7 +182,7 @@ void vtkDeformVolumeFilter::SetFromState(const char* property, int value)
 //------------------------------------------------------------------------------
 vtkStringArray* vtkDeformVolumeFilter::GetDeviceNames()
 {
-  deformvolume::Ranks().ShareProcessors();
+  deformvolume::Ranks().ShareProcessorsAlone();
   vtkStringArray* names = vtkStringArray::New();
   for (const std::string& name : deformvolume::GetDeviceNames())
   {

@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Runs a command with a kernel cache of PoCL that no other command uses at the same time, because PoCL
-# fails if several processes compile into one cache. So there are as many caches as commands at the
-# same time. Hard links share compiled kernels between the caches, so each kernel is compiled once.
+# Runs a command with a kernel cache of PoCL that no other command uses at the same time, because
+# processes that share a cache compile in turn. So there are as many caches as commands at the same
+# time. Hard links share compiled kernels between the caches, so each kernel is compiled once.
 #
 # Usage: WithKernelCache.sh FOLDER COMMAND [ARGUMENT]...
 set -euo pipefail

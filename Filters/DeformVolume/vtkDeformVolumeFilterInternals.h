@@ -141,12 +141,6 @@ public:
   /// volume, or the volume itself.
   vtkImageData* CropToWholeExtent(vtkImageData* volume, vtkInformation* info);
 
-  /// Calls a function on the ranks that have work. If kernels of a kind are used for the first
-  /// time, one rank of each machine goes first and compiles them into the kernel cache for the
-  /// other ranks, because two processes that write to one cache disturb each other. Collective.
-  void RunInTurn(const deformvolume::Ranks& ranks, const std::string& kind, bool hasWork,
-    const std::function<void()>& function) const;
-
   /// Chooses the resampler for a volume and the current deformation, and sets ResamplerInUse.
   /// checkMemory: throws an Error if the memory does not suffice for a resampler.
   deformvolume::Resampling ChooseResampler(

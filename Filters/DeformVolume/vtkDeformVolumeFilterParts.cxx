@@ -10,9 +10,7 @@
 #include "vtkInformation.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <exception>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <type_traits>
 
@@ -216,96 +214,6 @@ Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
         this->Self->SamplingFactor);
     });
   return needed;
-}
-
-//------------------------------------------------------------------------------
-namespace
-{
-
-// The kinds of kernels that this process has compiled, for the filters of all threads.
-class CompiledKinds
-{
-public:
-  static CompiledKinds& Get()
-  {
-    static CompiledKinds kinds;
-    return kinds;
-  }
-  bool Has(const std::string& kind)
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    return this->Kinds.count(kind) > 0;
-  }
-  void Add(const std::string& kind)
-  {
-    const std::lock_guard<std::mutex> lock(this->Mutex);
-    this->Kinds.insert(kind);
-  }
-
-private:
-  std::mutex Mutex;
-  std::set<std::string> Kinds;
-};
-
-} // namespace
-
-//------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::RunInTurn(const Ranks& ranks, const std::string& kind,
-  bool hasWork, const std::function<void()>& function) const
-{
-  std::exception_ptr failure;
-  const auto run = [&]
-  {
-    try
-    {
-      if (hasWork)
-      {
-        function();
-      }
-    }
-    catch (...)
-    {
-      failure = std::current_exception();
-    }
-  };
-  if (ranks.AreMany() && ranks.IsAny(!CompiledKinds::Get().Has(kind) && hasWork))
-  {
-    const std::vector<std::uint64_t> works = ranks.Gather(hasWork ? 1 : 0);
-    int leader = ranks.GetRank();
-    for (const int neighbor : ranks.GetNeighbors())
-    {
-      if (works[neighbor] > 0)
-      {
-        leader = neighbor;
-        break;
-      }
-    }
-    if (leader == ranks.GetRank())
-    {
-      run();
-    }
-    ranks.Wait();
-    if (leader != ranks.GetRank())
-    {
-      run();
-    }
-  }
-  else
-  {
-    run();
-  }
-  if (hasWork && !failure)
-  {
-    CompiledKinds::Get().Add(kind);
-  }
-  ranks.Attempt(
-    [&]
-    {
-      if (failure)
-      {
-        std::rethrow_exception(failure);
-      }
-    });
 }
 
 //------------------------------------------------------------------------------

@@ -147,7 +147,7 @@ int vtkDeformVolumeFilter::RequestInformation(
   const deformvolume::Ranks ranks;
   if (ranks.AreMany())
   {
-    ranks.GetNeighbors(); // has to be called before a device is selected
+    ranks.ShareProcessors(); // has to be called before a device is selected
   }
   this->Internals->CheckSettings(ranks);
   vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
@@ -348,7 +348,6 @@ int vtkDeformVolumeFilter::RequestData(
           isMapped ? state.Mapping.GetRunBytes(deformation.GetMeshAtRest(), mapped) : 0, method);
       });
   };
-  std::string kernelForm = "field";
   const bool isPart = ranks.IsAny(this->Internals->WantsPart(outInfo));
   ranks.Attempt(
     [&]
@@ -370,12 +369,6 @@ int vtkDeformVolumeFilter::RequestData(
             checkMemory(whole, method);
           }
         });
-      if (!deformation.IsField() && request.Method != deformvolume::Resampling::MeshRasterization)
-      {
-        kernelForm =
-          state.Mapping.GetRunBytes(deformation.GetMeshAtRest(), mapped) > 0 ? "runs" : "links";
-      }
-      kernelForm += deformvolume::HasCut(maskedVolume) ? " cut" : "";
     });
   if (ranks.IsAny(request.Method == deformvolume::Resampling::MeshRasterization))
   {
@@ -427,9 +420,14 @@ int vtkDeformVolumeFilter::RequestData(
     deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
     loss = state.Extra.Finish(deformation, mapped.Outside, this->BackgroundValue, image);
   };
-  this->Internals->RunInTurn(ranks,
-    deformvolume::GetKernelKey(this->DeviceInUse, request, kernelForm, described),
-    numberOfPoints > 0, deform);
+  ranks.Attempt(
+    [&]
+    {
+      if (numberOfPoints > 0)
+      {
+        deform();
+      }
+    });
   if (numberOfPoints > 0)
   {
     this->Internals->TakeReport(report, request.Method);

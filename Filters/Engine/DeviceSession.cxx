@@ -12,19 +12,6 @@
 namespace deformvolume
 {
 
-std::string GetKernelKey(const std::string& device, const DeformRequest& request,
-  const std::string& form, const std::vector<VolumeArray>& arrays)
-{
-  std::string kind = device + " " + std::to_string(static_cast<int>(request.Method)) + " " +
-    std::to_string(static_cast<int>(request.Interpolation)) + " " + form;
-  for (const VolumeArray& array : arrays)
-  {
-    kind += " " + std::to_string(static_cast<int>(array.Type)) + "/" +
-      std::to_string(array.Components) + (array.Categorical ? "c" : "");
-  }
-  return kind;
-}
-
 namespace
 {
 

@@ -24,10 +24,6 @@ namespace deformvolume
 /// name.
 constexpr const char* BEST_DEVICE = "best";
 
-/// Differs for requests that need different kernels. form: the kind of mapping, such as "runs".
-std::string GetKernelKey(const std::string& device, const DeformRequest& request,
-  const std::string& form, const std::vector<VolumeArray>& arrays);
-
 /// A VolumeDeformer with a record of the data on its device. Only data that changed are sent.
 class DeviceSession
 {

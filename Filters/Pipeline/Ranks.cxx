@@ -11,9 +11,9 @@
 #include <array>
 #include <cstdlib>
 #include <limits>
-#include <map>
 #include <mutex>
 #include <numeric>
+#include <set>
 #include <unistd.h>
 #include <utility>
 
@@ -127,14 +127,6 @@ std::vector<char> Ranks::Gather(const void* data, std::size_t bytes, const std::
   return all;
 }
 
-void Ranks::Wait() const
-{
-  if (this->AreMany())
-  {
-    this->Controller->Barrier();
-  }
-}
-
 void Ranks::Agree(Outcome outcome, const std::string& message) const
 {
   const std::vector<std::uint64_t> outcomes =
@@ -168,38 +160,34 @@ void Ranks::Agree(Outcome outcome, const std::string& message) const
   }
 }
 
-const std::vector<int>& Ranks::GetNeighbors() const
+void Ranks::ShareProcessors() const
 {
-  // Found once, since ranks do not move to other machines. A list is complete when it is inserted
-  // into the map, and does not change afterwards.
+  // Once for each number of ranks, since ranks do not move to other machines.
   static std::mutex mutex;
-  static std::map<int, std::vector<int>> found;
+  static std::set<int> counts;
+  const auto isDone = [&](bool adds)
   {
     const std::lock_guard<std::mutex> lock(mutex);
-    const auto known = found.find(this->Count);
-    if (known != found.end())
-    {
-      return known->second;
-    }
+    return adds ? !counts.insert(this->Count).second : counts.count(this->Count) > 0;
+  };
+  if (isDone(false))
+  {
+    return;
   }
-  std::vector<int> neighbors;
   constexpr std::size_t length = 256;
   std::array<char, length> name{};
   gethostname(name.data(), length - 1);
   const std::vector<char> names = this->Gather(name.data(), length, "names of machines");
+  int here = 0;
   for (int rank = 0; rank < this->Count; ++rank)
   {
-    if (std::equal(name.begin(), name.end(), names.begin() + rank * static_cast<int>(length)))
-    {
-      neighbors.push_back(rank);
-    }
+    here += std::equal(name.begin(), name.end(), names.begin() + rank * static_cast<int>(length));
   }
-  deformvolume::ShareProcessors(static_cast<int>(neighbors.size()));
-  const std::lock_guard<std::mutex> lock(mutex);
-  return found.emplace(this->Count, std::move(neighbors)).first->second;
+  deformvolume::ShareProcessors(here);
+  isDone(true);
 }
 
-void Ranks::ShareProcessors() const
+void Ranks::ShareProcessorsAlone() const
 {
   int here = this->Count;
   // Variables of Open MPI, of MPICH and its derivatives, of MVAPICH, and of Slurm.

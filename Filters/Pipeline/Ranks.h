@@ -39,7 +39,6 @@ public:
   /// The concatenated bytes of all ranks. Throws an Error on all ranks if there are more than
   /// 2,147,483,647. what: names the data in the message.
   std::vector<char> Gather(const void* data, std::size_t bytes, const std::string& what) const;
-  void Wait() const;
 
   /// Calls a function, which must not call collective functions. If it throws on any rank, all
   /// ranks throw the exception of the first of these ranks, as an Error, Aborted or std::bad_alloc.
@@ -74,15 +73,14 @@ public:
     this->Agree(outcome, message);
   }
 
-  /// The ranks on this machine, including this one, in ascending order. They share its processors:
-  /// the first call limits the threads of this rank, on the host and on CPU devices, to its share.
-  /// It has to come before a device is selected.
-  const std::vector<int>& GetNeighbors() const;
-
-  /// Limits the threads of this rank to its share, if a device is needed before the ranks can
-  /// communicate. The number of ranks on this machine is taken from an environment variable of the
-  /// launcher, or else is that of all ranks. Not collective.
+  /// The ranks on one machine share its processors: the first call limits the threads of this rank,
+  /// on the host and on CPU devices, to its share. It has to come before a device is selected.
   void ShareProcessors() const;
+
+  /// Like ShareProcessors(), if a device is needed before the ranks can communicate. The number of
+  /// ranks on this machine is taken from an environment variable of the launcher, or else is that
+  /// of all ranks. Not collective.
+  void ShareProcessorsAlone() const;
 
 private:
   enum class Outcome

@@ -3,13 +3,19 @@
 
 #include "Error.h"
 
+#include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
 #include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
-#include <vector>
 
 namespace deformvolume
 {
@@ -18,6 +24,12 @@ namespace
 
 std::once_flag Prepared;
 std::string Problem;
+
+/// The file that is locked, its descriptor, and the number of locks in this process.
+std::string LockedFile;
+int Lock = -1;
+int NumberOfLocks = 0;
+std::mutex LockMutex;
 
 std::string GetEnvironment(const char* name)
 {
@@ -77,9 +89,11 @@ void RemoveTemporaryDirectory()
 
 void Prepare()
 {
+  const char* const lockedFile = "/deformvolume.lock";
   const std::string directory = GetDefaultDirectory();
   if (IsUsable(directory))
   {
+    LockedFile = directory + lockedFile;
     return;
   }
   const std::string parent = GetEnvironment("TMPDIR").empty() ? "/tmp" : GetEnvironment("TMPDIR");
@@ -91,6 +105,7 @@ void Prepare()
       "\" is a directory that can be written to and executed from. Set POCL_CACHE_DIR to one.";
     return;
   }
+  LockedFile = TemporaryDirectory + lockedFile;
   setenv("POCL_CACHE_DIR", TemporaryDirectory.c_str(), 1);
   std::atexit(RemoveTemporaryDirectory);
 }
@@ -108,6 +123,41 @@ void CheckKernelCache()
   if (!Problem.empty())
   {
     throw Error(Problem);
+  }
+}
+
+KernelCacheLock::KernelCacheLock(bool isUsed)
+  : IsUsed(isUsed)
+{
+  if (!isUsed)
+  {
+    return;
+  }
+  const std::lock_guard<std::mutex> guard(LockMutex);
+  if (++NumberOfLocks > 1)
+  {
+    return;
+  }
+  Lock = open(LockedFile.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  // On a file system without locks, flock() fails with another error.
+  while (Lock >= 0 && flock(Lock, LOCK_EX | LOCK_NB) != 0 &&
+    (errno == EWOULDBLOCK || errno == EINTR) && std::chrono::steady_clock::now() < end)
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+KernelCacheLock::~KernelCacheLock()
+{
+  if (!this->IsUsed)
+  {
+    return;
+  }
+  const std::lock_guard<std::mutex> guard(LockMutex);
+  if (--NumberOfLocks == 0 && Lock >= 0)
+  {
+    close(Lock); // unlocks the file
   }
 }
 

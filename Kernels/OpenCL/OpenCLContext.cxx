@@ -254,7 +254,8 @@ OpenCLContext::OpenCLContext(const OpenCLDevice& device)
   : Device(device)
   , NumberOfUnits(device.Device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>())
 {
-  if (IsPoCL(device))
+  this->UsesPoCL = IsPoCL(device);
+  if (this->UsesPoCL)
   {
     CheckKernelCache();
     if (device.IsProcessor) // PoCL runs no linker for other devices
@@ -283,7 +284,7 @@ bool OpenCLContext::HasExtension(const std::string& name) const
 
 bool OpenCLContext::SharesHostMemory() const
 {
-  return IsPoCL(this->Device);
+  return this->UsesPoCL;
 }
 
 StagedCopies* OpenCLContext::GetStagedCopies()
@@ -338,6 +339,7 @@ cl::Program OpenCLContext::Build(const std::string& source, const std::string& o
   }
   try
   {
+    const KernelCacheLock cache(this->UsesPoCL);
     program.build({ this->Device.Device }, (options + processor).c_str());
   }
   catch (const cl::BuildError&)
@@ -364,12 +366,15 @@ OpenCLContext::LaunchKey OpenCLContext::MakeLaunchKey(
   {
     name += " " + std::to_string(group[axis]);
   }
-  // PoCL also compiles kernels again for small numbers of work-groups. This takes little time, but
-  // needs the linker.
-  for (cl::size_type axis = 0; this->OwnLinker && axis < items.dimensions(); ++axis)
+  // PoCL also compiles a kernel again if all axes have fewer than 65,535 work-items and, in some
+  // versions, for small numbers of work-groups. This takes little time, but needs the linker.
+  bool areFew = this->UsesPoCL;
+  for (cl::size_type axis = 0; axis < items.dimensions(); ++axis)
   {
-    name += " of " + std::to_string(items[axis]);
+    areFew = areFew && items[axis] < 65535;
+    name += this->OwnLinker ? " of " + std::to_string(items[axis]) : "";
   }
+  name += areFew ? " few" : "";
   return { kernel.getInfo<CL_KERNEL_PROGRAM>()(), name };
 }
 
@@ -396,8 +401,9 @@ cl::Event OpenCLContext::Launch(const cl::CommandQueue& queue, const cl::Kernel&
     return event;
   }
   queue.finish(); // so that the measured time is that of this launch alone
-  const KernelLinkerScope linker(this->OwnLinker);
   CompilationWatch::Compilation compilation;
+  const KernelCacheLock cache(this->UsesPoCL);
+  const KernelLinkerScope linker(this->OwnLinker);
   queue.enqueueNDRangeKernel(kernel, cl::NullRange, items, group, nullptr, &event);
   event.wait();
   compilation.Exclude(GetSeconds(event));
@@ -412,8 +418,9 @@ void OpenCLContext::Prepare(
   if (!this->WasLaunched(key))
   {
     queue.finish();
-    const KernelLinkerScope linker(this->OwnLinker);
     const CompilationWatch::Compilation compilation;
+    const KernelCacheLock cache(this->UsesPoCL);
+    const KernelLinkerScope linker(this->OwnLinker);
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, group, group);
     queue.finish();
     this->AddLaunched(key);

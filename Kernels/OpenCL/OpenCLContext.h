@@ -92,7 +92,8 @@ private:
   BuiltProgram& FindProgram(const ProgramText& source, const std::string& options);
   cl::Program Build(const std::string& source, const std::string& options) const;
   /// The driver compiles a kernel when it is launched first with a key: a program, and a text of
-  /// the name of the kernel, the group size and, if OwnLinker is set, the number of work-items.
+  /// the name of the kernel, the group size, whether there are few work-items and, if OwnLinker is
+  /// set, their number.
   using LaunchKey = std::pair<cl_program, std::string>;
   LaunchKey MakeLaunchKey(
     const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group) const;
@@ -101,7 +102,8 @@ private:
 
   OpenCLDevice Device;
   cl::Context Context;
-  bool OwnLinker = false; // whether commands that may compile need a KernelLinkerScope
+  bool UsesPoCL = false;  // whether commands that may compile need a KernelCacheLock
+  bool OwnLinker = false; // whether they need a KernelLinkerScope
   std::string Extensions;
   cl_uint NumberOfUnits;
   std::mutex Mutex;

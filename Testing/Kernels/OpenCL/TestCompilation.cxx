@@ -18,6 +18,10 @@
 #include <future>
 #include <thread>
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 using namespace deformvolume;
 
 namespace
@@ -172,6 +176,29 @@ TEST_F(Compilation, ProgramsCompileConcurrently)
   slow.join();
   FakeDriver::Reset();
   EXPECT_TRUE(came);
+}
+
+TEST_F(Compilation, WaitsForOtherProcesses)
+{
+  if (!GetContext().SharesHostMemory())
+  {
+    GTEST_SKIP() << "the driver is not PoCL";
+  }
+  // A lock of another descriptor is like that of another process.
+  const std::string path = std::string(std::getenv("POCL_CACHE_DIR")) + "/deformvolume.lock";
+  const int file = open(path.c_str(), O_RDWR | O_CREAT, 0666);
+  ASSERT_EQ(flock(file, LOCK_EX), 0);
+  std::promise<void> isBuilding;
+  FakeDriver::Get().OnBuild = [&](const std::string& /*text*/, const std::string& /*options*/,
+                                const std::string& /*kernels*/) { isBuilding.set_value(); };
+  std::thread waiting(
+    [] { GetContext().GetProgram(ProgramText("__kernel void Waiting()\n{\n}\n"), ""); });
+  std::future<void> building = isBuilding.get_future();
+  EXPECT_EQ(building.wait_for(std::chrono::seconds(2)), std::future_status::timeout);
+  close(file);
+  building.wait();
+  waiting.join();
+  FakeDriver::Reset();
 }
 
 TEST_F(Compilation, WatchesMeasureTheirOwnThread)
