@@ -6,6 +6,7 @@
 #include "FieldGeometry.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
+#include "MemoryError.h"
 #include "OutputExtent.h"
 #include "PipelineGeometry.h"
 #include "ResamplerChoice.h"
@@ -112,7 +113,7 @@ void vtkDeformVolumeFilter::vtkInternals::CheckWithRoom(const std::function<void
     check();
     return;
   }
-  catch (const Error&)
+  catch (const deformvolume::MemoryError&)
   {
     if (!this->ReleaseOtherStates())
     {
@@ -257,7 +258,7 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
         checkMemory(tried);
         return true;
       }
-      catch (const Error&)
+      catch (const deformvolume::MemoryError&)
       {
         return false;
       }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MemoryBudget.h"
 
-#include "Error.h"
+#include "MemoryError.h"
 #include "SystemMemory.h"
 #include "WorkDevice.h"
 
@@ -63,7 +63,7 @@ void MemoryBudget::CheckBytes(std::uint64_t needed, std::uint64_t available, con
 {
   if (needed > available)
   {
-    throw Error(std::string("Not enough memory ") + where + ": " + std::to_string(needed) +
+    throw MemoryError(std::string("Not enough memory ") + where + ": " + std::to_string(needed) +
       " bytes are needed and " + std::to_string(available) +
       " are available. Use a smaller volume, fewer arrays or smaller output bounds, raise the "
       "memory limit if one is set, or choose another device.");

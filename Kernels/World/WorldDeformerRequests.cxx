@@ -4,9 +4,9 @@
 
 #include "Background.h"
 #include "Densities.h"
-#include "Error.h"
 #include "Fading.h"
 #include "FieldFolds.h"
+#include "MemoryError.h"
 #include "MemoryNeeds.h"
 #include "ParallelFor.h"
 #include "ResamplerChoice.h"
@@ -227,7 +227,7 @@ Resampling WorldDeformer::ChooseMethod(
         this->CheckMemory(arrays, whole, method);
         return true;
       }
-      catch (const Error&)
+      catch (const MemoryError&)
       {
         return false;
       }

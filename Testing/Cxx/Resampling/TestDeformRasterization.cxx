@@ -85,6 +85,13 @@ TEST_F(DeformRasterization, Misuse)
   deformed.Filter->SetMemoryLimit(0);
   deformed.Update();
   EXPECT_EQ(deformed.Filter->GetResamplerInUse(), int(vtkDeformVolumeFilter::MESH_RASTERIZATION));
+
+  // Only a lack of memory makes AUTOMATIC choose mesh rasterization. Its error would be another
+  // one.
+  const auto huge = MakeMesh(volume, 2, 1e10);
+  SetDisplacements(huge, Shift(0.0, 0.0, 0.0));
+  Deformed byHuge(volume, huge);
+  EXPECT_TRUE(HasPart(GetError(byHuge), "more than 2147483648 voxels"));
 }
 
 // Both resamplers reproduce a volume of any geometry that is at rest, or moved by whole voxels.
