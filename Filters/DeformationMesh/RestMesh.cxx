@@ -263,7 +263,8 @@ void RestMesh::UpdateDerivedPoints(std::size_t nodes)
 bool RestMesh::ReadPoints(
   const MeshParts& rest, const DeformationSource& source, std::size_t before)
 {
-  this->KeptPoints = true;
+  // After a failure, what was computed from the points may be older than the points.
+  this->KeptPoints = !this->ShapeIsOld;
   const MeshStamp stamp = MeshStamp::OfPoints(rest, IsRestMade(source));
   if (stamp.IsThatOf(this->PointsStamp) && source.Volume == this->Volume)
   {
@@ -290,7 +291,7 @@ bool RestMesh::ReadPoints(
     this->PointMemories.clear();
     throw;
   }
-  this->KeptPoints = kept;
+  this->KeptPoints = kept && !this->ShapeIsOld;
   this->PointsStamp = stamp;
   this->Volume = source.Volume;
   return true;

@@ -7,10 +7,14 @@
 
 #include <vtkCellData.h>
 #include <vtkFloatArray.h>
+#include <vtkIdList.h>
 #include <vtkIdTypeArray.h>
 #include <vtkInformation.h>
+#include <vtkPoints.h>
 #include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
 
+#include <limits>
 #include <vector>
 
 using namespace filterTesting;
@@ -199,6 +203,58 @@ TEST(ArrayChanges, Filter)
   EXPECT_TRUE(AreEqual(hidden, fresh()));
   volume->GetCellData()->RemoveArray(ghosts->GetName());
   EXPECT_TRUE(AreEqual(update(), fresh()));
+}
+
+// A log of the deformed points does not contain the points at rest. They move in an update that
+// fails.
+TEST(ArrayChanges, RestPointsOfAFailedUpdate)
+{
+  const auto volume = MakeImage({ { 0, 12, 0, 12, 0, 12 } });
+  AddScalars<short>(volume, "value", [](const glm::dvec3& p) { return p.x + 40.0 * p.y; });
+  const auto rest = MakeMesh(volume, 4, 12.0);
+  const auto move = [](vtkPointSet* mesh, double distance)
+  {
+    for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+    {
+      double point[3];
+      mesh->GetPoint(i, point);
+      mesh->GetPoints()->SetPoint(i, point[0] + distance, point[1], point[2]);
+    }
+    mesh->GetPoints()->Modified();
+  };
+  vtkNew<vtkUnstructuredGrid> mesh;
+  mesh->DeepCopy(rest);
+  move(mesh, 2.0);
+  vtkNew<vtkArrayChanges> log;
+  log->SetArray(mesh->GetPoints()->GetData());
+  const auto hidden = MakeArray<vtkUnsignedCharArray>(
+    vtkDataSetAttributes::GhostArrayName(), rest->GetNumberOfCells());
+  vtkNew<vtkIdList> cells;
+  rest->GetPointCells(0, cells);
+  for (vtkIdType i = 0; i < cells->GetNumberOfIds(); ++i)
+  {
+    hidden->SetValue(cells->GetId(i), vtkDataSetAttributes::HIDDENCELL);
+  }
+  const auto prepare = [&](Deformed& deformed)
+  {
+    deformed.Filter->SetInputData(2, rest);
+    deformed.Filter->SetOutputBoundsModeToVolumeBounds();
+  };
+  Deformed deformed(volume, mesh);
+  prepare(deformed);
+  deformed.Update();
+  move(rest, 1.0);
+  rest->GetPoints()->SetPoint(0, std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
+  deformed.Filter->Update();
+  EXPECT_EQ(deformed.TakeErrors(), 1);
+  for (vtkDataSet* one : { static_cast<vtkDataSet*>(rest), static_cast<vtkDataSet*>(mesh) })
+  {
+    one->GetCellData()->AddArray(hidden);
+    one->Modified();
+  }
+  Deformed fresh(volume, mesh);
+  prepare(fresh);
+  EXPECT_TRUE(AreEqual(deformed.Update(), fresh.Update()));
 }
 
 } // namespace
