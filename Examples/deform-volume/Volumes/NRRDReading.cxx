@@ -145,17 +145,18 @@ void NRRDFile::SortAxes()
   for (unsigned int axis = 0; axis < this->Data->dim; ++axis)
   {
     const int kind = this->Data->axis[axis].kind;
+    const bool isDomain = kind == nrrdKindDomain || kind == nrrdKindSpace;
     const bool isOfSpace =
-      this->HasDirection(axis) || kind == nrrdKindDomain || kind == nrrdKindSpace;
+      hasDirections ? this->HasDirection(axis) : isDomain || kind == nrrdKindUnknown;
     if (kind == nrrdKindComplex)
     {
       this->Fail("its values are complex, which a volume of VTK cannot hold");
     }
-    if (this->IsOfTime(axis))
+    if (this->IsOfTime(axis) || (isDomain && !isOfSpace))
     {
       this->FrameAxes.push_back(axis);
     }
-    else if (isOfSpace || (kind == nrrdKindUnknown && !hasDirections))
+    else if (isOfSpace)
     {
       // Without kinds, an axis after three space axes is a time axis.
       (this->SpaceAxes.size() < 3 ? this->SpaceAxes : this->FrameAxes).push_back(axis);

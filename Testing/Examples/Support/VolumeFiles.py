@@ -169,7 +169,7 @@ for axis in range(4):
     vectors = numpy.moveaxis(make_values("float32", 4, 5, 6, 3), 3, axis)
     write_nrrd(f"vector{axis}.nrrd", vectors, axis=axis)
     add_nrrd(f"vector{axis}.nrrd", axis=axis)
-    kind = ("list", "time")[axis % 2]
+    kind = ("domain", "time", "list", "time")[axis]
     write_nrrd(f"{kind}{axis}.nrrd", make_values("int16", 4, 4, 4, 4), axis=axis, kind=kind)
     add_nrrd(f"{kind}{axis}.nrrd", "--frame", "2", axis=axis, frame=2)
 nrrd.write(path("spacings.nrrd"), xyz, {"spacings": [1.0, 2.0, 3.0], "kinds": ["domain"] * 3})
