@@ -501,7 +501,9 @@ extern "C"
    * rest. It needs neither a volume nor a device, and computes in double precision as
    * vtkDeformGeometryFilter does, which documents the map. Where the deformation folds, several
    * points at rest may belong to one deformed point; one of them is chosen. report may be null.
-   * Fails if a point is not finite, or for the deformations for which dv_deform() fails. */
+   * Fails if a point is not finite, or if the deformation has no displacements or numbers that are
+   * not finite. Unlike dv_deform(), it takes displacements of any length, and meshes that hold no
+   * voxel. */
   DV_EXPORT int32_t dv_deform_points(
     dv_deformer* deformer, const dv_points_request* request, dv_points_report* report);
 

@@ -424,6 +424,7 @@ void Build(const Plan& plan)
     AddDriver(plan.Driver); // before its device appears to be a graphics card
   }
   driver.SkipsLaunches = !plan.IsRun;
+  driver.SkipsOptimization = !plan.IsRun && plan.Driver.empty();
   driver.IsGraphics = !plan.IsProcessor;
   driver.HasDouble = plan.HasDouble;
   driver.HasNVIDIAOptions = !plan.IsProcessor && plan.Driver.empty();

@@ -229,6 +229,7 @@ extern "C" cl_int CL_API_CALL clBuildProgram(cl_program program, cl_uint number,
   {
     known.erase(std::min(known.find(" -cl-nv-"), known.size()));
   }
+  known += FakeDriver::Get().SkipsOptimization ? " -cl-opt-disable" : "";
   const cl_int error = real(program, number, devices, known.c_str(), done, data);
   if (error == CL_SUCCESS && !done && FakeDriver::Get().OnBuild)
   {

@@ -81,6 +81,8 @@ struct FakeDriver
   Counter<int> LaunchesWithoutGroup;
   /// Kernels are not run. Their output keeps its values, which are 0 at first.
   bool SkipsLaunches = false;
+  /// Programs are compiled without optimization, which takes less time.
+  bool SkipsOptimization = false;
   /// Called with each program that was built from source: the text, the options, and the names of
   /// the kernels, separated by semicolons.
   std::function<void(const std::string&, const std::string&, const std::string&)> OnBuild;
