@@ -407,7 +407,7 @@ protected:
 
   std::mt19937 Random{ 17U + static_cast<unsigned int>(GTEST_FLAG_GET(random_seed)) };
   // Large enough that moving one node affects only a part.
-  EditedVolume Volume{ Extent{ { -5, 140, 0, 74, 3, 78 } } };
+  EditedVolume Volume{ Extent{ { -5, 100, 0, 58, 3, 62 } } };
   std::vector<unsigned char> AllCrossed; // tetrahedra that the whole cut crosses
   std::unique_ptr<VolumeDeformer> Whole;
   VolumeDeformer Updated;
