@@ -371,32 +371,29 @@ void SessionPipeline::Cut(const SessionEvent& event)
   };
   try
   {
+    if (elastic) // first, because a new edit of the mask removes the undone edits
+    {
+      this->CutMesh(elastic, sheet, this->GetHeld(), cut);
+    }
     this->Update(this->CutFilter);
   }
   catch (...)
   {
     disconnect();
+    if (elastic)
+    {
+      elastic->SetSheetData(nullptr);
+      if (cut.HasSplit)
+      {
+        elastic->UndoCut();
+      }
+      this->StepBack(); // the output of the elastic filter is empty
+    }
     throw;
   }
   disconnect();
   this->Update(this->CutFilter);
   this->Do(cut);
-  if (!elastic)
-  {
-    return;
-  }
-  try
-  {
-    this->CutMesh(elastic, sheet, this->GetHeld(), this->Done.back());
-  }
-  catch (...)
-  {
-    elastic->SetSheetData(nullptr);
-    this->Done.pop_back();
-    this->UndoEdits(this->CutFilter, 1);
-    this->IsToRebuild = true; // the output of the elastic filter is empty
-    throw;
-  }
 }
 
 void SessionPipeline::CutMesh(
@@ -414,12 +411,13 @@ void SessionPipeline::CutMesh(
 void SessionPipeline::Carve(const SessionEvent& event)
 {
   const glm::dvec3 position = GetPosition(event, 1);
+  const bool isNew = event.Numbers[0] != 0.0 || !this->IsStroke;
+  this->IsStroke = false; // an event that fails ends the stroke, too
   if (!(event.Numbers[4] > 0.0))
   {
     throw std::runtime_error(
       "The carving radius is " + Format(event.Numbers[4]) + ". Set a radius greater than 0.");
   }
-  const bool isNew = event.Numbers[0] != 0.0 || !this->IsStroke;
   if (isNew)
   {
     this->CarveFilter->ClearToolPositions();

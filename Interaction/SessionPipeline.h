@@ -138,6 +138,7 @@ private:
   void SetModel(int model);
   void SetLattice(int nodes);
   void Do(Action action);
+  void Push(Action action);
   void Undo();
   void Redo();
   void UndoEdits(vtkVolumeEditAlgorithm* filter, int edits);

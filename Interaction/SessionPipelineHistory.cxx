@@ -23,12 +23,18 @@ namespace deformvolume
 // Saves the state of the model: must be called before the action changes it.
 void SessionPipeline::Do(Action action)
 {
+  action.Before = this->SaveState();
+  this->Push(std::move(action));
+}
+
+// Adds an action that cannot fail any more: the undone actions are lost.
+void SessionPipeline::Push(Action action)
+{
   for (Action& undone : this->Undone)
   {
     this->ForgetStates(undone);
   }
   this->Undone.clear();
-  action.Before = this->SaveState();
   this->Done.push_back(std::move(action));
   this->LimitStates();
 }

@@ -138,7 +138,7 @@ void SessionPipeline::SetModel(int model)
   change.Kind = Action::MODEL;
   change.Model = model;
   change.FormerModel = this->Model;
-  this->Do(change);
+  change.Before = this->SaveState();
   this->Model = model;
   try
   {
@@ -147,12 +147,13 @@ void SessionPipeline::SetModel(int model)
   catch (...)
   {
     this->Model = change.FormerModel;
-    this->RestoreState(this->Done.back().Before);
-    this->ForgetStates(this->Done.back());
+    this->RestoreState(change.Before);
+    this->ForgetStates(change);
     this->Done = done;
     this->Undone = undone;
     throw;
   }
+  this->Push(change);
 }
 
 void SessionPipeline::SetLattice(int nodes)

@@ -996,6 +996,54 @@ TEST(DeformVolumeSession, CutsAfterFailures)
   }
 }
 
+// Events that fail do not change what can be redone, and end a stroke.
+TEST(DeformVolumeSession, FailuresKeepHistory)
+{
+  const auto volume = MakeVolume(Box);
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetInputData(volume);
+  lattice->Update();
+  lattice->GetOutput()->GetPoints()->SetPoint(0, -2.5, 1.0, 0.0); // no cube: not for MASS_SPRING
+  Tested one(volume);
+  Session* session = one.Object;
+  EXPECT_TRUE(session->SetInputs(volume, lattice->GetOutput()));
+  session->ChangeModel(Session::CHAIN_MAIL);
+  const int pulled = session->BeginGrab(10, 10, 10);
+  session->MoveGrab(pulled, 14, 10, 10);
+  one.Step();
+  session->EndGrab(pulled);
+  const auto before = one.Finish();
+  session->Undo();
+  one.Finish();
+  session->ChangeModel(Session::MASS_SPRING);
+  one.ExpectError("cube");
+  EXPECT_EQ(session->GetNumberOfUndoneActions(), 1);
+  session->Redo();
+  EXPECT_TRUE(AreEqual(one.Finish(), before));
+
+  session->CarveSphere(6, 6, 6, 3);
+  session->CarveSphere(6, 6, 6, -1);
+  session->CarveTo(12, 6, 6, 3);
+  one.ExpectError("radius");
+  EXPECT_EQ(session->GetNumberOfActions(), 4);
+
+  // A sheet so small that it does not split the mesh, so that Undo() does not update it.
+  EXPECT_TRUE(session->SetInputs(volume));
+  session->ChangeModel(Session::FINITE_ELEMENTS);
+  const int handle = session->BeginGrab(10, 10, 17);
+  one.Finish();
+  session->Cut(MakePlane({ 11.3, 12.4, 9.2 }, { 1, 0, 0 }, { 0, 1, 0 }));
+  session->MoveGrab(handle, 1e300, 10, 17);
+  session->HoldGrab(handle);
+  session->Undo();
+  session->Cut(MakePlane({ 11, 12, 9 }, { 60, 0, 0 }, { 0, 60, 0 }));
+  session->Redo();
+  one.ExpectError("displacement of a handle is too large");
+  EXPECT_EQ(session->GetNumberOfActions(), 3);
+  EXPECT_EQ(session->GetNumberOfUndoneActions(), 0);
+  one.Finish();
+}
+
 TEST(DeformVolumeSession, HiddenCells)
 {
   vtkNew<vtkLatticeTetrahedraSource> lattice;
