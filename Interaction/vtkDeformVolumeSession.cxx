@@ -53,6 +53,12 @@ std::string CheckVolume(vtkImageData* volume)
   return "";
 }
 
+bool IsSetting(const SessionEvent& event)
+{
+  return event.Kind == SessionEvent::HANDLE_RADIUS || event.Kind == SessionEvent::RELAXATION ||
+    event.Kind == SessionEvent::LATTICE || event.Kind == SessionEvent::UNDO_MEMORY;
+}
+
 bool HasBits(vtkDataArray* array, int bits)
 {
   for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
@@ -151,7 +157,10 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
     internals.InputHash.clear();
     isDone = true;
     const std::lock_guard<std::mutex> lock(internals.QueueMutex);
-    internals.Queue.clear();
+    SessionEvents& queue = internals.Queue;
+    queue.erase(
+      std::remove_if(queue.begin(), queue.end(), [](const auto& one) { return !IsSetting(one); }),
+      queue.end());
     internals.NewOutput = nullptr;
     internals.State = vtkInternals::PublishedState();
     internals.Sampling.BackgroundValue =

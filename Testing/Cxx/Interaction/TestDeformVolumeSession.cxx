@@ -1044,6 +1044,27 @@ TEST(DeformVolumeSession, FailuresKeepHistory)
   one.Finish();
 }
 
+// SetInputs() removes pending events, but not those that change settings.
+TEST(DeformVolumeSession, PendingSettings)
+{
+  const auto volume = MakeVolume(Box);
+  const std::string fileName = GetFileName();
+  Tested one(volume);
+  one.Object->ChangeHandleRadius(3.5);
+  one.Object->CarveSphere(6, 6, 6, 3);
+  one.Object->ChangeRelaxationSweeps(4);
+  one.Object->ChangeNumberOfNodes(9);
+  one.Object->ChangeUndoMemory(1e6);
+  EXPECT_TRUE(one.Object->SetInputs(volume) && one.Object->SaveSession(fileName));
+  const std::string text = ReadText(fileName);
+  for (const char* event :
+    { "HandleRadius 3.5", "RelaxationSweeps 4", "NumberOfNodes 9", "UndoMemory 1000000" })
+  {
+    EXPECT_TRUE(HasPart(text, event));
+  }
+  EXPECT_FALSE(HasPart(text, "Carve"));
+}
+
 TEST(DeformVolumeSession, HiddenCells)
 {
   vtkNew<vtkLatticeTetrahedraSource> lattice;
