@@ -28,6 +28,7 @@
 
 using deformvolume::SessionEvent;
 using deformvolume::SessionEvents;
+using Sampling = deformvolume::SessionPipeline::Sampling;
 
 namespace
 {
@@ -169,8 +170,8 @@ bool vtkDeformVolumeSession::SetInputs(vtkImageData* volume, vtkUnstructuredGrid
   }
   catch (const std::exception& error)
   {
-    this->Report(error.what());
     fault = internals.Inputs.first ? internals.Restore(record) : "";
+    this->Report(error.what());
     if (!fault.empty())
     {
       this->Report(fault);
@@ -330,10 +331,8 @@ void vtkDeformVolumeSession::SetMovingSamplingFactor(int factor)
     this->Report("MovingSamplingFactor is " + std::to_string(factor) + ". Set 1, 2 or 4.");
     return;
   }
-  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
-  if (factor != this->Internals->Sampling.Factor)
+  if (this->Internals->ChangeSampling(&Sampling::Factor, factor))
   {
-    this->Internals->Sampling.Factor = factor;
     this->Modified();
   }
 }
@@ -347,11 +346,9 @@ int vtkDeformVolumeSession::GetMovingSamplingFactor()
 void vtkDeformVolumeSession::SetPadding(int voxels)
 {
   constexpr int most = 1000;
-  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
   const int padding = std::clamp(voxels, 0, most);
-  if (padding != this->Internals->Sampling.Padding)
+  if (this->Internals->ChangeSampling(&Sampling::Padding, padding))
   {
-    this->Internals->Sampling.Padding = padding;
     this->Modified();
   }
 }
@@ -364,10 +361,8 @@ int vtkDeformVolumeSession::GetPadding()
 
 void vtkDeformVolumeSession::SetBackgroundValue(double value)
 {
-  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
-  if (value != this->Internals->Sampling.BackgroundValue)
+  if (this->Internals->ChangeSampling(&Sampling::BackgroundValue, value))
   {
-    this->Internals->Sampling.BackgroundValue = value;
     this->Modified();
   }
 }
@@ -455,9 +450,9 @@ bool vtkDeformVolumeSession::Probe(double x, double y, double z)
   {
     return false;
   }
-  const vtkInternals::Access access(*this->Internals);
-  try
+  try // access ends before the error is reported, as its observers may call the session
   {
+    const vtkInternals::Access access(*this->Internals);
     deformvolume::SessionPipeline& pipeline = this->Internals->Pipeline;
     vtkImageData* output = pipeline.Resample(this->Internals->GetFullSampling());
     const vtkIdType voxel = output->FindPoint(x, y, z);

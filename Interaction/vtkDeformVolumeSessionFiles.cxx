@@ -59,9 +59,9 @@ bool vtkDeformVolumeSession::SaveSession(const std::string& fileName)
   {
     return false;
   }
-  const vtkInternals::Access access(*this->Internals);
-  try
+  try // access ends before the error is reported, as its observers may call the session
   {
+    const vtkInternals::Access access(*this->Internals);
     if (!this->Internals->Queue.empty())
     {
       this->Internals->RunOnce();
@@ -111,8 +111,8 @@ bool vtkDeformVolumeSession::LoadSession(const std::string& fileName)
   }
   catch (const std::exception& error) // for example std::bad_alloc
   {
-    this->Report("The session " + fileName + " cannot be replayed: " + error.what());
     const std::string fault = internals.Restore(record);
+    this->Report("The session " + fileName + " cannot be replayed: " + error.what());
     if (!fault.empty())
     {
       this->Report(fault);
@@ -144,9 +144,9 @@ bool vtkDeformVolumeSession::Save(
     this->Report("Cannot write " + fileName + ": the name must end in " + suffix + ".");
     return false;
   }
-  const vtkInternals::Access access(*this->Internals);
-  try
+  try // access ends before the error is reported, as its observers may call the session
   {
+    const vtkInternals::Access access(*this->Internals);
     write();
     return true;
   }

@@ -59,6 +59,14 @@ public:
   std::thread Worker;
   int LastHandle = -1;
 
+  // Returns whether the value has changed.
+  template <typename ValueT>
+  bool ChangeSampling(ValueT deformvolume::SessionPipeline::Sampling::*member, ValueT value)
+  {
+    const std::lock_guard<std::mutex> lock(this->QueueMutex);
+    return std::exchange(this->Sampling.*member, value) != value;
+  }
+
   // The sampling at rest.
   deformvolume::SessionPipeline::Sampling GetFullSampling();
 

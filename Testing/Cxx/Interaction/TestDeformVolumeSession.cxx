@@ -10,6 +10,7 @@
 #include "vtkDeformGeometryFilter.h"
 #include "vtkDeformVolumeSession.h"
 
+#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellType.h>
 #include <vtkPlaneSource.h>
@@ -1063,6 +1064,29 @@ TEST(DeformVolumeSession, PendingSettings)
     EXPECT_TRUE(HasPart(text, event));
   }
   EXPECT_FALSE(HasPart(text, "Carve"));
+}
+
+// Observers may call methods that wait for the end of a step, also when such a method has failed.
+TEST(DeformVolumeSession, CallsOfObservers)
+{
+  Tested one(MakeVolume(Box));
+  int calls = 0;
+  vtkNew<vtkCallbackCommand> observer;
+  observer->SetClientData(&calls);
+  observer->SetCallback(
+    [](vtkObject* caller, unsigned long, void* count, void*)
+    {
+      auto* session = Session::SafeDownCast(caller);
+      *static_cast<int*>(count) += session->Probe(10, 10, 10) && session->GetPadding() > 0;
+    });
+  one.Object->AddObserver(vtkCommand::ErrorEvent, observer);
+  one.Object->AddObserver(vtkCommand::ModifiedEvent, observer);
+  EXPECT_FALSE(one.Object->SaveSession("/dev/null/session"));
+  EXPECT_FALSE(one.Object->SaveVolume("/dev/null/volume.vti"));
+  one.Object->SetMovingSamplingFactor(2);
+  one.Object->SetPadding(9);
+  one.Object->SetBackgroundValue(-3.0);
+  EXPECT_EQ(calls, 5);
 }
 
 TEST(DeformVolumeSession, HiddenCells)
