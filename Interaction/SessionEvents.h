@@ -59,7 +59,8 @@ SessionEvent MakeCutEvent(vtkPolyData* sheet);
 vtkSmartPointer<vtkPolyData> MakeSheet(const SessionEvent& cut);
 
 /// Returns a hash of the geometry and all point arrays of a volume, and of the points and cells of
-/// a mesh if it is not null; then a space, and a hash of the arrays of the mesh.
+/// a mesh if it is not null; a hash of the arrays of the mesh, if it is not null; and a hash of
+/// everything else that the result depends on, such as cell arrays. Spaces separate the parts.
 std::string HashInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh);
 
 ///@{

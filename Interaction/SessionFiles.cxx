@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SessionEvents.h"
 
+#include "vtkBitArray.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -78,6 +79,19 @@ public:
       this->Add(array);
     }
   }
+  // Add() adds no values of bit arrays.
+  void AddBits(vtkDataSetAttributes* arrays)
+  {
+    for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+    {
+      auto* bits = vtkArrayDownCast<vtkBitArray>(arrays->GetAbstractArray(i));
+      for (vtkIdType value = 0; bits && value < bits->GetNumberOfValues(); ++value)
+      {
+        const auto bit = static_cast<char>(bits->GetValue(value));
+        this->Add(&bit, 1);
+      }
+    }
+  }
   std::string Finish()
   {
     char digits[33] = {};
@@ -141,7 +155,25 @@ std::string deformvolume::HashInputs(vtkImageData* volume, vtkUnstructuredGrid* 
     arrays.AddByName(mesh->GetCellData());
     text += ' ' + arrays.Finish();
   }
-  return text;
+  // What the first parts leave out. They do not change, so that files of older versions can be
+  // read.
+  Hash others;
+  const char* name = volume->GetPointData()->GetScalars()->GetName();
+  others.Add(name, name ? std::strlen(name) : 0);
+  others.AddByName(volume->GetCellData());
+  others.AddBits(volume->GetPointData());
+  others.AddBits(volume->GetCellData());
+  if (mesh)
+  {
+    others.AddBits(mesh->GetPointData());
+    others.AddBits(mesh->GetCellData());
+    for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+    {
+      const int type = mesh->GetCellType(cell);
+      others.Add(&type, sizeof(type));
+    }
+  }
+  return text + ' ' + others.Finish();
 }
 
 void deformvolume::WriteEvents(
@@ -211,9 +243,8 @@ deformvolume::SessionEvents deformvolume::ReadEvents(
     throw std::runtime_error(
       "The session " + fileName + " is damaged: its checksum does not match its events.");
   }
-  // Files of version 0.1 have no hash of the arrays of a mesh.
-  const std::string inputs = GetAttribute(root, "inputs");
-  if (inputs != inputHash && inputs != inputHash.substr(0, inputHash.find(' ')))
+  // Files of older versions have only the first parts of the hash.
+  if ((inputHash + ' ').rfind(GetAttribute(root, "inputs") + ' ', 0) != 0)
   {
     throw std::runtime_error("The session " + fileName +
       " was recorded with another volume or mesh. Open the volume and mesh that it was recorded "

@@ -42,7 +42,7 @@
  *
  * @par Files:
  * A session is saved as the record of its events, in XML with a version, a checksum, and a hash of
- * the volume, and of the mesh with its arrays. Loading a session replays the events. On the same
+ * the volume and the mesh with their arrays. Loading a session replays the events. On the same
  * device, the result is bitwise equal, and the same actions can be undone. Files are written under
  * a temporary name in the same folder, and renamed when they are complete.
  *

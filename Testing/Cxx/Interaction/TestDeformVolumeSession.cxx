@@ -10,6 +10,7 @@
 #include "vtkDeformGeometryFilter.h"
 #include "vtkDeformVolumeSession.h"
 
+#include <vtkBitArray.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellType.h>
@@ -834,6 +835,37 @@ TEST(DeformVolumeSession, Files)
   EXPECT_TRUE(other.Object->SetInputs(volume, mesh));
   EXPECT_FALSE(other.Object->LoadSession(fileName + ".mesh"));
   EXPECT_TRUE(HasPart(other.TakeError(), "another volume or mesh"));
+
+  // The same values with another array of active scalars, other bits or other active tetrahedra.
+  const auto other1 = MakeArray<vtkUnsignedCharArray>("Other", volume->GetNumberOfPoints());
+  other1->Fill(1);
+  vtkNew<vtkBitArray> bits;
+  bits->SetName("Bits");
+  bits->SetNumberOfValues(volume->GetNumberOfPoints());
+  bits->Fill(1);
+  const auto active =
+    MakeArray<vtkUnsignedCharArray>("ActiveTetrahedra", volume->GetNumberOfCells());
+  active->Fill(31);
+  vtkNew<vtkImageData> recorded;
+  recorded->ShallowCopy(volume);
+  recorded->GetPointData()->AddArray(other1);
+  recorded->GetPointData()->AddArray(bits);
+  recorded->GetCellData()->AddArray(active);
+  const auto isLoaded = [&]
+  { return other.Object->SetInputs(recorded) && other.Object->LoadSession(fileName + ".arrays"); };
+  EXPECT_TRUE(other.Object->SetInputs(recorded) && other.Object->SaveSession(fileName + ".arrays"));
+  EXPECT_TRUE(isLoaded());
+  bits->SetValue(7, 0);
+  EXPECT_FALSE(isLoaded());
+  bits->SetValue(7, 1);
+  active->SetValue(7, 0);
+  EXPECT_FALSE(isLoaded());
+  active->SetValue(7, 31);
+  recorded->GetPointData()->SetActiveScalars("Other");
+  EXPECT_FALSE(isLoaded());
+  recorded->GetPointData()->SetActiveScalars(volume->GetPointData()->GetScalars()->GetName());
+  EXPECT_TRUE(isLoaded());
+  other.TakeError();
 
   // A folder that does not exist, and a full disk: the previous file is kept.
   EXPECT_FALSE(one.Object->SaveSession("/dev/null/session"));
