@@ -71,8 +71,9 @@ void WriteEvents(
 SessionEvents ReadEvents(const std::string& fileName, const std::string& inputHash);
 ///@}
 
-/// Calls `write` with the name of a temporary file in the same folder, and then renames this file
-/// to fileName. If something is thrown, removes the temporary file.
+/// Calls `write` with the name of a new temporary file in the same folder, and then renames this
+/// file to fileName, or to the file that the symbolic link fileName refers to. It has the
+/// permissions of the file that it replaces. If something is thrown, removes the temporary file.
 void WriteAndRename(
   const std::string& fileName, const std::function<void(const std::string& name)>& write);
 

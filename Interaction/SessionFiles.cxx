@@ -23,9 +23,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 namespace
 {
@@ -117,6 +119,26 @@ std::string HashEvents(const deformvolume::SessionEvents& events)
 std::string GetReason()
 {
   return errno != 0 ? std::string(": ") + std::strerror(errno) : std::string();
+}
+
+// Makes an empty file and returns its name: `name`, or with a number if such a file exists.
+std::string MakeFile(const std::string& name, const std::string& target)
+{
+  std::string unused = name;
+  std::FILE* file = nullptr;
+  for (int i = 1; !file; ++i)
+  {
+    errno = 0;
+    file = vtksys::SystemTools::Fopen(unused, "wx"); // x: fails if the file exists
+    if (!file && errno != EEXIST)
+    {
+      throw std::runtime_error("The file " + target + " cannot be written" + GetReason() +
+        ". Choose a folder that can be written and has space.");
+    }
+    unused = file ? unused : name + std::to_string(i);
+  }
+  std::fclose(file);
+  return unused;
 }
 
 std::string GetAttribute(vtkXMLDataElement* element, const char* name)
@@ -256,14 +278,34 @@ deformvolume::SessionEvents deformvolume::ReadEvents(
 void deformvolume::WriteAndRename(
   const std::string& fileName, const std::function<void(const std::string& name)>& write)
 {
-  const std::string part = fileName + ".part";
+  namespace filesystem = std::filesystem;
+  std::error_code error;
+  filesystem::path target = filesystem::u8path(fileName);
+  constexpr int mostLinks = 40; // as in Linux
+  for (int i = 0; i < mostLinks && filesystem::is_symlink(target, error); ++i)
+  {
+    target = target.parent_path() / filesystem::read_symlink(target, error);
+  }
+  const std::string part = MakeFile(target.u8string() + ".part", fileName);
+  const filesystem::path partPath = filesystem::u8path(part);
   try
   {
-    write(part);
-    errno = 0;
-    if (std::rename(part.c_str(), fileName.c_str()) != 0)
+    const filesystem::file_status former = filesystem::status(target, error);
+    if (filesystem::is_regular_file(former))
     {
-      throw std::runtime_error("The file " + fileName + " cannot be written" + GetReason() + ".");
+      filesystem::permissions(
+        partPath, former.permissions() | filesystem::perms::owner_write, error);
+    }
+    write(part);
+    if (filesystem::is_regular_file(former))
+    {
+      filesystem::permissions(partPath, former.permissions(), error);
+    }
+    filesystem::rename(partPath, target, error);
+    if (error)
+    {
+      throw std::runtime_error(
+        "The file " + fileName + " cannot be written: " + error.message() + ".");
     }
   }
   catch (...)

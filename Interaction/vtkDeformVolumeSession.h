@@ -44,7 +44,9 @@
  * A session is saved as the record of its events, in XML with a version, a checksum, and a hash of
  * the volume and the mesh with their arrays. Loading a session replays the events. On the same
  * device, the result is bitwise equal, and the same actions can be undone. Files are written under
- * a temporary name in the same folder, and renamed when they are complete.
+ * a temporary name in the same folder, and renamed when they are complete. They keep the
+ * permissions of the file that they replace. A symbolic link stays; the file it refers to is
+ * replaced.
  *
  * @par Errors:
  * Each error is one vtkErrorMacro, which says what is wrong and what to do, and GetErrorMessage().

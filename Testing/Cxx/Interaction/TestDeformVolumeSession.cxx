@@ -28,6 +28,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -1119,6 +1120,33 @@ TEST(DeformVolumeSession, CallsOfObservers)
   one.Object->SetPadding(9);
   one.Object->SetBackgroundValue(-3.0);
   EXPECT_EQ(calls, 5);
+}
+
+// Saving keeps other files, symbolic links and permissions.
+TEST(DeformVolumeSession, ReplacedFiles)
+{
+  namespace filesystem = std::filesystem;
+  const filesystem::path folder = GetFileName() + ".folder";
+  filesystem::remove_all(folder);
+  filesystem::create_directory(folder);
+  const std::string name = folder / "target.xml";
+  WriteText(name + ".part", "not of the session");
+  WriteText(name, "old");
+  constexpr auto permissions = filesystem::perms::owner_read | filesystem::perms::owner_write;
+  filesystem::permissions(name, permissions);
+  filesystem::create_symlink("target.xml", folder / "link.xml");
+  filesystem::create_symlink("new.xml", folder / "dangling.xml");
+  Tested one(MakeVolume(Box));
+  EXPECT_TRUE(one.Object->SaveSession(folder / "link.xml"));
+  EXPECT_TRUE(one.Object->SaveSession(folder / "dangling.xml"));
+  EXPECT_TRUE(filesystem::is_symlink(folder / "link.xml"));
+  EXPECT_TRUE(filesystem::is_symlink(folder / "dangling.xml"));
+  EXPECT_TRUE(HasPart(ReadText(folder / "new.xml"), "DeformVolumeSession"));
+  EXPECT_TRUE(HasPart(ReadText(name), "DeformVolumeSession"));
+  EXPECT_EQ(filesystem::status(name).permissions(), permissions);
+  EXPECT_EQ(ReadText(name + ".part"), "not of the session");
+  const auto files = filesystem::directory_iterator(folder);
+  EXPECT_EQ(std::distance(begin(files), end(files)), 5); // no temporary file is left
 }
 
 TEST(DeformVolumeSession, HiddenCells)
