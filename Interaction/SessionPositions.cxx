@@ -5,15 +5,18 @@
 
 #include "vtkAdaptiveSubdivisionFilter.h"
 #include "vtkCallbackCommand.h"
+#include "vtkClipPolyData.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDeformGeometryFilter.h"
 #include "vtkImageData.h"
 #include "vtkNew.h"
+#include "vtkPlane.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSMPTools.h"
+#include "vtkTriangleFilter.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <glm/geometric.hpp>
@@ -209,6 +212,47 @@ glm::dvec3 MoveWithMesh(const glm::dvec3& position, vtkDataSet* mesh, bool isToR
   return GetPosition(sheet, 0);
 }
 
+// Removes what lies farther from a deformed body than an edge of the subdivided sheet, because the
+// time of the subdivision grows with the square of the number of triangles. Returns the whole sheet
+// if all of it is far, so that the cut is an edit that can be undone.
+vtkSmartPointer<vtkPolyData> CutOffFarParts(
+  vtkPolyData* sheet, vtkDataSet* deformation, double edge)
+{
+  const double most = deformation->GetPointData()->GetVectors()->GetRange(-1)[1] + edge;
+  vtkSmartPointer<vtkPolyData> kept = sheet;
+  for (int side = 0; side < 6; ++side)
+  {
+    const double sign = side % 2 == 0 ? 1.0 : -1.0;
+    const double border = deformation->GetBounds()[side] - sign * most;
+    if (sign * kept->GetBounds()[side] >= sign * border)
+    {
+      continue;
+    }
+    vtkNew<vtkPlane> plane;
+    double origin[3] = { 0.0, 0.0, 0.0 };
+    double normal[3] = { 0.0, 0.0, 0.0 };
+    origin[side / 2] = border;
+    normal[side / 2] = sign;
+    plane->SetOrigin(origin);
+    plane->SetNormal(normal);
+    vtkNew<vtkClipPolyData> clip;
+    clip->SetInputData(kept);
+    clip->SetClipFunction(plane);
+    clip->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+    vtkNew<vtkTriangleFilter> triangles;
+    triangles->SetInputConnection(clip->GetOutputPort());
+    triangles->PassVertsOff();
+    triangles->PassLinesOff();
+    triangles->Update();
+    kept = triangles->GetOutput();
+    if (kept->GetNumberOfPolys() == 0)
+    {
+      return sheet;
+    }
+  }
+  return kept;
+}
+
 } // namespace
 
 glm::dvec3 deformvolume::FindRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed)
@@ -231,11 +275,12 @@ glm::dvec3 deformvolume::FindDeformedPosition(vtkDataSet* deformation, const glm
 vtkSmartPointer<vtkPolyData> deformvolume::MoveToRest(vtkPolyData* sheet, vtkDataSet* deformation)
 {
   constexpr double edgesOnBody = 40.0;
-  constexpr double mostEdges = 300.0; // on the diagonal of a sheet
+  constexpr double mostEdges = 60.0; // on the diagonal of a sheet
+  const double edge = deformation->GetLength() / edgesOnBody;
+  const vtkSmartPointer<vtkPolyData> kept = CutOffFarParts(sheet, deformation, edge);
   vtkNew<vtkAdaptiveSubdivisionFilter> fine;
-  fine->SetInputData(sheet);
-  fine->SetMaximumEdgeLength(
-    std::max(deformation->GetLength() / edgesOnBody, sheet->GetLength() / mostEdges));
+  fine->SetInputData(kept);
+  fine->SetMaximumEdgeLength(std::max(edge, kept->GetLength() / mostEdges));
   fine->SetMaximumTriangleArea(VTK_DOUBLE_MAX);
   fine->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
   fine->Update();

@@ -1208,6 +1208,30 @@ TEST(DeformVolumeSession, CoarseSheets)
   }
 }
 
+// Cuts with very large sheets take as long as cuts with smaller ones, and split the same faces.
+TEST(DeformVolumeSession, LargeSheets)
+{
+  for (const int model : { Session::CHAIN_MAIL, Session::FINITE_ELEMENTS })
+  {
+    vtkSmartPointer<vtkImageData> outputs[2];
+    for (const double size : { 60.0, 1e4 })
+    {
+      Tested one(MakeVolume(Box));
+      one.Object->ChangeModel(model);
+      one.Step();
+      one.Object->Cut(MakePlane({ 11, 12, 9.7 }, { size, 0, 0 }, { 0, size, 0 }));
+      one.Object->ChangeModel(Session::MASS_SPRING); // cuts its mesh by the sheet at rest
+      one.Step();
+      EXPECT_LT(one.Object->GetSimulationTime(), 5.0); // 20 s and more without clipping
+      const int handle = one.Object->BeginGrab(11, 12, 17);
+      one.Object->MoveGrab(handle, 11, 12, 20);
+      outputs[size > 60.0] = one.Step();
+      EXPECT_EQ(one.TakeError(), "");
+    }
+    EXPECT_TRUE(AreEqual(outputs[0], outputs[1]));
+  }
+}
+
 // Another handle that holds deformed tissue moves nothing before it is moved.
 TEST(DeformVolumeSession, GrabsMoveNothing)
 {
