@@ -44,6 +44,11 @@ std::string CheckVolume(vtkImageData* volume)
   {
     return "The volume has no active point scalars. Call SetScalars() of its point data.";
   }
+  if (volume->GetPointData()->GetScalars()->GetDataType() == VTK_BIT)
+  {
+    return "The active point scalars of the volume are a vtkBitArray, which cannot be deformed. "
+           "Convert them to numeric scalars, such as a vtkUnsignedCharArray.";
+  }
   if (volume->GetDataDimension() != 3)
   {
     const int* dimensions = volume->GetDimensions();

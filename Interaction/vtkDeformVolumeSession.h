@@ -90,11 +90,12 @@ public:
   ///@}
 
   /**
-   * Begin a session with a volume at rest, of at least two voxels on each axis, and optionally a
-   * mesh, the input of vtkMassSpringDeformation or vtkFiniteElementDeformation, without hidden
-   * cells and points. Removes all actions and pending events, and sets the model to NONE. Settings
-   * do not change, and pending changes of settings stay pending. The arrays of the volume are
-   * shared, and must not be modified; the mesh is copied. Returns false after an error.
+   * Begin a session with a volume at rest, of at least two voxels on each axis and with active
+   * point scalars that are not bits, and optionally a mesh, the input of vtkMassSpringDeformation
+   * or vtkFiniteElementDeformation, without hidden cells and points. Removes all actions and
+   * pending events, and sets the model to NONE. Settings do not change, and pending changes of
+   * settings stay pending. The arrays of the volume are shared, and must not be modified; the mesh
+   * is copied. Returns false after an error.
    */
   bool SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh = nullptr);
 

@@ -131,6 +131,14 @@ TEST(DeformVolumeSession, Misuse)
   observer->Clear();
   EXPECT_FALSE(none->SetInputs(MakeVolume({ { 0, 9, 3, 3, 0, 7 } })));
   EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "10 x 1 x 8 voxels"));
+  const auto bitVolume = MakeImage(Box);
+  vtkNew<vtkBitArray> bits;
+  bits->SetNumberOfValues(bitVolume->GetNumberOfPoints());
+  bits->Fill(1);
+  bitVolume->GetPointData()->SetScalars(bits);
+  observer->Clear();
+  EXPECT_FALSE(none->SetInputs(bitVolume));
+  EXPECT_TRUE(HasPart(observer->GetErrorMessage(), "are a vtkBitArray"));
   none->Start();
   EXPECT_FALSE(none->GetIsRunning());
   EXPECT_FALSE(none->TakeOutput());
