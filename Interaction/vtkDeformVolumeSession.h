@@ -43,7 +43,8 @@
  * @par Files:
  * A session is saved as the record of its events, in XML with a version, a checksum, and a hash of
  * the volume and the mesh with their arrays. Loading a session replays the events. On the same
- * device, the result is bitwise equal, and the same actions can be undone. Files are written under
+ * device, the result is bitwise equal if Padding, BackgroundValue and MovingSamplingFactor, which
+ * files do not contain, are equal; and the same actions can be undone. Files are written under
  * a temporary name in the same folder, and renamed when they are complete. They keep the
  * permissions of the file that they replace. A symbolic link stays; the file it refers to is
  * replaced.
