@@ -214,10 +214,10 @@ void vtkMaterialFromVolume::Execute(
   volume.Default = table.Get(this->DefaultMaterial, "DefaultMaterial");
   vtkDataArray* array =
     deformvolume::FindMaterialArray(image, this->MaterialArrayName, !table.Ranges.empty());
-  volume.Indices = deformvolume::ReadMaterials(
-    array, image->GetNumberOfPoints(), table.Ranges, this->DefaultMaterial, table.Exists);
   const deformvolume::PointGhosts ghosts = deformvolume::FindPointGhosts(image, "volume");
   volume.Ghosts = ghosts.Values;
+  volume.Indices = deformvolume::ReadMaterials(array, image->GetNumberOfPoints(), table.Ranges,
+    this->DefaultMaterial, table.Exists, ghosts.Values);
 
   const deformvolume::GridTetrahedra read = deformvolume::ReadTetrahedra(mesh, true);
   const std::vector<glm::dvec3> points = mesh->GetNumberOfPoints() > 0

@@ -3,13 +3,13 @@
 #define DeformVolumeMaskArray_h
 
 #include "vtkAOSDataArrayTemplate.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkType.h"
 
 #include <string>
 #include <vector>
 
 class vtkDataSet;
-class vtkDataSetAttributes;
 class vtkImageData;
 class vtkInformation;
 
@@ -73,6 +73,10 @@ CutValues FindCut(vtkImageData* volume);
 /// components or size. `what` and `owner` are words for the message, such as "cell" and "volume".
 ByteArray* FindMask(vtkDataSetAttributes* attributes, const char* name, vtkIdType size,
   const std::string& what, const std::string& owner);
+
+/// The bits of vtkGhostType that mean that a point of a volume is ignored.
+constexpr unsigned char IgnoredPointBits =
+  vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
 
 /// The vtkGhostType of the points of a dataset, one byte each. Points whose vtkValidPointMask is 0
 /// are hidden as well.

@@ -2,6 +2,7 @@
 #include "MaterialArray.h"
 
 #include "Error.h"
+#include "MaskArray.h"
 #include "ParallelFor.h"
 #include "ShapedArray.h"
 
@@ -87,7 +88,8 @@ vtkDataArray* FindMaterialArray(vtkImageData* volume, const std::string& name, b
 }
 
 std::vector<unsigned char> ReadMaterials(vtkDataArray* array, vtkIdType voxels,
-  const std::vector<MaterialRange>& ranges, int fallback, const std::array<bool, 256>& exists)
+  const std::vector<MaterialRange>& ranges, int fallback, const std::array<bool, 256>& exists,
+  const unsigned char* ghosts)
 {
   std::vector<unsigned char> materials(
     static_cast<std::size_t>(voxels), static_cast<unsigned char>(fallback));
@@ -101,7 +103,8 @@ std::vector<unsigned char> ReadMaterials(vtkDataArray* array, vtkIdType voxels,
     [&](vtkIdType first, const auto& values)
     {
       const std::int64_t without =
-        WriteMaterials(values, rule, &materials[static_cast<std::size_t>(first)]);
+        WriteMaterials(values, rule, &materials[static_cast<std::size_t>(first)],
+          ghosts ? ghosts + first : nullptr, IgnoredPointBits);
       if (without >= 0)
       {
         Lower(firstWithout, first + static_cast<vtkIdType>(without));

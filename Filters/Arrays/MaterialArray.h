@@ -25,9 +25,12 @@ vtkDataArray* FindMaterialArray(vtkImageData* volume, const std::string& name, b
 /// Reads the materials of the voxels from an array of one component. With ranges, a voxel has the
 /// material of the range that contains its value, or `fallback` if no range does. Without ranges,
 /// the values are the materials. Without an array, all voxels have the material `fallback`. exists:
-/// which of the 256 materials are defined. Throws an Error that names a value without a material.
+/// which of the 256 materials are defined. ghosts: null, or a byte for each voxel; voxels with one
+/// of the IgnoredPointBits are not read, and have the material `fallback`. Throws an Error that
+/// names a value without a material.
 std::vector<unsigned char> ReadMaterials(vtkDataArray* array, vtkIdType voxels,
-  const std::vector<MaterialRange>& ranges, int fallback, const std::array<bool, 256>& exists);
+  const std::vector<MaterialRange>& ranges, int fallback, const std::array<bool, 256>& exists,
+  const unsigned char* ghosts = nullptr);
 
 /// Converts the values of an array of one component to flags: 0 for 0, and 1 for other values.
 std::vector<unsigned char> ReadFlags(vtkDataArray* array);

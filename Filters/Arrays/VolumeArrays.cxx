@@ -286,7 +286,7 @@ VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last)
   if (masks.Ghosts.Values)
   {
     masks.Blanked = masks.Ghosts.Values;
-    masks.BlankedBits = vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
+    masks.BlankedBits = IgnoredPointBits;
   }
 
   if (const auto active =

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VolumeMaterials.h"
 
+#include "MaskArray.h"
 #include "StaticMapping.h"
-
-#include "vtkDataSetAttributes.h"
 
 #include <glm/vec4.hpp>
 
@@ -85,9 +84,7 @@ public:
 private:
   bool IsHidden(std::size_t voxel) const
   {
-    constexpr unsigned char hidden =
-      vtkDataSetAttributes::DUPLICATEPOINT | vtkDataSetAttributes::HIDDENPOINT;
-    return this->Volume.Ghosts && (this->Volume.Ghosts[voxel] & hidden) != 0;
+    return this->Volume.Ghosts && (this->Volume.Ghosts[voxel] & IgnoredPointBits) != 0;
   }
 
   // Adds voxels in their order, because sums of doubles depend on it.

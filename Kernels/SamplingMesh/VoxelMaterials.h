@@ -43,10 +43,11 @@ int GetMaterialNumber(T value)
 }
 
 /// Writes the material of each value. Returns the index of the first value without a defined
-/// material, or -1.
+/// material, or -1. masks: null, or a byte for each value. Values whose byte has one of the bits
+/// `ignored` get the fallback material.
 template <typename Values>
-std::int64_t WriteMaterials(
-  const Values& values, const MaterialRule& rule, unsigned char* materials)
+std::int64_t WriteMaterials(const Values& values, const MaterialRule& rule,
+  unsigned char* materials, const unsigned char* masks = nullptr, unsigned char ignored = 0)
 {
   using Value =
     std::decay_t<typename std::iterator_traits<decltype(std::begin(values))>::value_type>;
@@ -54,6 +55,11 @@ std::int64_t WriteMaterials(
   std::int64_t voxel = 0;
   for (const Value value : values)
   {
+    if (masks && (masks[voxel] & ignored) != 0)
+    {
+      materials[voxel++] = static_cast<unsigned char>(rule.Fallback);
+      continue;
+    }
     int index = rule.Ranges.empty() ? GetMaterialNumber<Value>(value) : rule.Fallback;
     for (const MaterialRange& range : rule.Ranges)
     {

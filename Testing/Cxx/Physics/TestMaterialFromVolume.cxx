@@ -10,6 +10,7 @@
 #include <vtkCellArray.h>
 #include <vtkSMPTools.h>
 #include <vtkShortArray.h>
+#include <vtkSignedCharArray.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <glm/geometric.hpp>
@@ -127,6 +128,30 @@ TEST(MaterialFromVolume, Misuse)
   vtkShortArray::SafeDownCast(volume->GetPointData()->GetScalars())->SetValue(11, 5);
   EXPECT_TRUE(HasPart(tested.TryUpdate(), "Voxel 11 has the value 5"));
   vtkShortArray::SafeDownCast(volume->GetPointData()->GetScalars())->SetValue(11, 1);
+
+  // Values of hidden and duplicate voxels need no material.
+  for (const int kind : { vtkDataSetAttributes::HIDDENPOINT, vtkDataSetAttributes::DUPLICATEPOINT })
+  {
+    vtkShortArray::SafeDownCast(volume->GetPointData()->GetScalars())->SetValue(11, -1000);
+    const auto marked =
+      MakeArray<vtkUnsignedCharArray>("vtkGhostType", volume->GetNumberOfPoints());
+    marked->SetValue(11, static_cast<unsigned char>(kind));
+    volume->GetPointData()->AddArray(marked);
+    EXPECT_EQ(tested.TryUpdate(), "");
+    vtkShortArray::SafeDownCast(volume->GetPointData()->GetScalars())->SetValue(12, -1000);
+    EXPECT_TRUE(HasPart(tested.TryUpdate(), "Voxel 12 has the value -1000"));
+    vtkShortArray::SafeDownCast(volume->GetPointData()->GetScalars())->SetValue(12, 1);
+  }
+  volume->GetPointData()->RemoveArray("vtkGhostType");
+  const auto valid =
+    MakeArray<vtkSignedCharArray>("vtkValidPointMask", volume->GetNumberOfPoints());
+  valid->Fill(1.0);
+  valid->SetValue(11, 0);
+  volume->GetPointData()->AddArray(valid);
+  EXPECT_EQ(tested.TryUpdate(), "");
+  volume->GetPointData()->RemoveArray("vtkValidPointMask");
+  vtkShortArray::SafeDownCast(volume->GetPointData()->GetScalars())->SetValue(11, 1);
+
   tested.Filter->ClearMaterials();
   EXPECT_EQ(tested.Filter->GetNumberOfMaterials(), 0);
   EXPECT_TRUE(HasPart(tested.TryUpdate(), "DefaultMaterial 1 is not defined"));
