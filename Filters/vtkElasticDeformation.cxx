@@ -372,7 +372,7 @@ std::size_t vtkElasticDeformation::UpdateCuts(vtkPolyData* sheet)
 {
   deformvolume::ElasticSession& session = this->Internals->Session;
   const deformvolume::WorldSheet read = deformvolume::ReadSheet(
-    sheet, { this->SweepVector[0], this->SweepVector[1], this->SweepVector[2] }, "sheet");
+    sheet, glm::dvec3(this->SweepVector[0], this->SweepVector[1], this->SweepVector[2]), "sheet");
   const std::size_t undone = std::min(this->Internals->CutsToUndo, session.GetNumberOfCuts());
   session.RemoveCuts(session.GetNumberOfCuts() - undone);
   this->Internals->CutsToUndo = 0;

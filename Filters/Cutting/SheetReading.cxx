@@ -110,10 +110,11 @@ void AddLines(vtkPolyData* data, const glm::dvec3& sweepVector, WorldSheet& shee
 
 } // namespace
 
-WorldSheet ReadSheet(vtkPolyData* data, const glm::dvec3& sweepVector, const std::string& name)
+WorldSheet ReadSheet(
+  vtkPolyData* data, const std::optional<glm::dvec3>& sweepVector, const std::string& name)
 {
   WorldSheet sheet;
-  if (!IsFinite(sweepVector))
+  if (sweepVector && !IsFinite(*sweepVector))
   {
     throw Error("SweepVector is not finite. Set a finite vector.");
   }
@@ -146,15 +147,16 @@ WorldSheet ReadSheet(vtkPolyData* data, const glm::dvec3& sweepVector, const std
   {
     return sheet;
   }
-  if (sweepVector != glm::dvec3(0.0))
+  if (sweepVector && *sweepVector != glm::dvec3(0.0))
   {
-    AddLines(shown, sweepVector, sheet);
+    AddLines(shown, *sweepVector, sheet);
   }
   else if (sheet.IsEmpty())
   {
-    throw Error("The " + name +
-      " has lines and no triangles. Set SweepVector to the direction and "
-      "the distance in which the lines are to cut.");
+    throw Error("The " + name + " has lines and no triangles. " +
+      (sweepVector
+          ? "Set SweepVector to the direction and the distance in which the lines are to cut."
+          : "Connect a closed surface of triangles."));
   }
   return sheet;
 }

@@ -24,6 +24,7 @@
 #include <iterator>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -184,7 +185,7 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
   }
   vtkDataArray* labels = this->FindLabels(vtkImageData::GetData(input[0]));
   deformvolume::WorldSheet sheet = deformvolume::ReadSheet(
-    vtkPolyData::GetData(input[1]), glm::dvec3(0.0), "surface on input port 1");
+    vtkPolyData::GetData(input[1]), std::nullopt, "surface on input port 1");
   deformvolume::EditFinder finder = edits.MakeFinder(input);
   finder.IsSmooth = this->Self->SmoothBoundary;
   finder.Rule = this->GetRule();

@@ -9,6 +9,7 @@
 #include <vtkBox.h>
 #include <vtkCubeSource.h>
 #include <vtkImplicitBoolean.h>
+#include <vtkLineSource.h>
 #include <vtkPlane.h>
 #include <vtkSphere.h>
 #include <vtkSphereSource.h>
@@ -92,6 +93,11 @@ TEST(CarveVolume, Misuse)
   carve.Filter->SetInputData(wrong);
   carve.Fails("\"ActiveTetrahedra\"");
   carve.Filter->SetInputData(volume);
+  EXPECT_EQ(carve.CopyMask(), before);
+  vtkNew<vtkLineSource> line;
+  carve.Filter->SetSurfaceConnection(line->GetOutputPort());
+  carve.Fails("has lines and no triangles. Connect a closed surface of triangles.");
+  carve.Filter->SetSurfaceConnection(nullptr);
   EXPECT_EQ(carve.CopyMask(), before);
 
   // A label that does not occur is reported once, as a warning.
