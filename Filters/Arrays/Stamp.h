@@ -7,12 +7,18 @@
 #include <utility>
 #include <vector>
 
+class vtkAbstractArray;
+
 namespace deformvolume
 {
 
 /// Addresses and modification times of VTK objects. Two stamps differ if one of the objects was
 /// replaced or modified.
 using Stamp = std::vector<std::pair<const void*, vtkMTimeType>>;
+
+/// Adds an array, or null, to a stamp: two entries, of which the second one also differs if the
+/// array has other memory or another size.
+void AddArray(Stamp& stamp, vtkAbstractArray* array);
 
 } // namespace deformvolume
 

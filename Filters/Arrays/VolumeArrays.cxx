@@ -115,11 +115,14 @@ std::array<vtkAbstractArray*, NumberOfMasks> FindMasks(vtkImageData* volume)
     volume->GetPointData()->GetAbstractArray(CutDistanceName) } };
 }
 
-// Whether one of the masks is the same object as when a stamp was taken.
+// Whether one of the masks is the same object, with the same memory, as when a stamp was taken.
 bool HasSameMask(
   const std::array<vtkAbstractArray*, NumberOfMasks>& arrays, Mask mask, const Stamp& last)
 {
-  return last.size() == 2 * NumberOfMasks && last[2 * mask].first == arrays[mask];
+  Stamp now;
+  AddArray(now, arrays[mask]);
+  return last.size() == 2 * NumberOfMasks && last[2 * mask].first == now[0].first &&
+    last[2 * mask + 1] == now[1];
 }
 
 // The tuples of a mask that were written since a stamp was taken, according to the log of its
@@ -220,10 +223,7 @@ Stamp GetStamp(const std::vector<SourceArray>& arrays)
   Stamp stamp;
   for (const SourceArray& source : arrays)
   {
-    stamp.emplace_back(source.Array, source.Array->GetMTime());
-    // SetArray() replaces the values of an array without replacing the array.
-    stamp.emplace_back(
-      FindValues(source.Array), static_cast<vtkMTimeType>(source.Array->GetNumberOfValues()));
+    AddArray(stamp, source.Array);
   }
   return stamp;
 }
@@ -343,8 +343,7 @@ Stamp GetMasksStamp(vtkImageData* volume)
   Stamp stamp;
   for (vtkAbstractArray* array : FindMasks(volume))
   {
-    stamp.emplace_back(array, array ? array->GetMTime() : 0);
-    stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
+    AddArray(stamp, array);
   }
   return stamp;
 }

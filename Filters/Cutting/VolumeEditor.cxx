@@ -85,7 +85,7 @@ Stamp GetCutStamp(vtkImageData* volume)
   {
     if (array)
     {
-      stamp.emplace_back(array, array->GetMTime());
+      AddArray(stamp, array);
     }
   }
   return stamp;
@@ -101,9 +101,13 @@ bool VolumeEditor::SetVolume(
   ByteArray* base = FindMask(
     volume->GetCellData(), ActiveTetrahedraName, volume->GetNumberOfCells(), "cell", "volume");
   const unsigned char* bytes = base ? base->GetPointer(0) : nullptr;
-  const Stamp stamp{ { base, base ? base->GetMTime() : 0 }, { bytes, 0 }, written };
+  Stamp stamp;
+  AddArray(stamp, base);
+  stamp.push_back(written);
   vtkAbstractArray* distances = volume->GetPointData()->GetAbstractArray(BoundaryDistanceName);
-  const Stamp distancesStamp{ { distances, distances ? distances->GetMTime() : 0 }, written };
+  Stamp distancesStamp;
+  AddArray(distancesStamp, distances);
+  distancesStamp.push_back(written);
   const bool isNew = !this->Mask || geometry != this->Geometry;
   if (distancesStamp != this->DistancesStamp)
   {

@@ -204,12 +204,10 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
     [&] { return finder.CarveSurface(sheet); }, changes);
   const std::size_t beforeLabel = changes.size();
   const deformvolume::LabelReader readLabels = MakeLabelReader(labels);
+  deformvolume::Stamp labelStamp{ deformvolume::GetWrittenStamp(this->Self, 0) };
+  deformvolume::AddArray(labelStamp, labels);
   this->AddChange(
-    this->Label,
-    labels
-      ? Body::Key{ { { labels, labels->GetMTime() }, deformvolume::GetWrittenStamp(this->Self, 0) },
-          { rule, this->Self->Label } }
-      : Body::Key(),
+    this->Label, labels ? Body::Key{ labelStamp, { rule, this->Self->Label } } : Body::Key(),
     [&] { return finder.CarveLabel(readLabels, this->Self->Label); }, changes);
   std::vector<glm::dvec3> stroke;
   for (const deformvolume::ToolPath::Position& position : edits.Tool.GetStroke())

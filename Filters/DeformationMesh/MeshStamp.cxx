@@ -19,13 +19,6 @@
 namespace deformvolume
 {
 
-void AddArray(Stamp& stamp, vtkAbstractArray* array)
-{
-  stamp.emplace_back(array, array ? array->GetMTime() : 0);
-  // Insertions do not change the modification time.
-  stamp.emplace_back(nullptr, array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
-}
-
 std::array<vtkAbstractArray*, 3> FindMasks(vtkDataSet* grid)
 {
   const char* ghosts = vtkDataSetAttributes::GhostArrayName();

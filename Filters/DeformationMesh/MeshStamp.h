@@ -13,9 +13,6 @@ class vtkDataSet;
 namespace deformvolume
 {
 
-/// Adds an array to a stamp, with its modification time and size. It may be null.
-void AddArray(Stamp& stamp, vtkAbstractArray* array);
-
 /// The arrays that mark cells as SkippedCells; null for those that do not exist.
 std::array<vtkAbstractArray*, 3> FindMasks(vtkDataSet* grid);
 

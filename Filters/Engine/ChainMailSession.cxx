@@ -27,7 +27,9 @@ const char* const PINNED = "Pinned";
 
 Stamp GetStampOf(vtkDataArray* array, const Stamp::value_type& written)
 {
-  return { { array, array ? array->GetMTime() : 0 }, written };
+  Stamp stamp{ written };
+  AddArray(stamp, array);
+  return stamp;
 }
 
 // Null if there is no array of this name.

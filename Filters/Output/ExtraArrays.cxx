@@ -154,15 +154,16 @@ vtkDataArray* ExtraArrays::FindFloats(vtkDataArray* density)
   {
     return density;
   }
-  const std::pair<const void*, vtkMTimeType> stamp(density, density->GetMTime());
+  Stamp stamp;
+  AddArray(stamp, density);
   const auto last = std::find_if(this->Copies.begin(), this->Copies.end(),
     [&](const Copy& copy) { return HasName(copy.Floats, density->GetName()); });
   Copy& copy = last != this->Copies.end() ? *last : this->Copies.emplace_back();
-  if (!copy.Floats || copy.Stamp != stamp)
+  if (!copy.Floats || copy.DensityStamp != stamp)
   {
     copy.Floats = vtkSmartPointer<vtkFloatArray>::New();
     copy.Floats->DeepCopy(density);
-    copy.Stamp = stamp;
+    copy.DensityStamp = stamp;
   }
   return copy.Floats;
 }

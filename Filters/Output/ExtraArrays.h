@@ -100,7 +100,7 @@ private:
   // Copies of densities of integers, and the stamps of the original arrays.
   struct Copy
   {
-    std::pair<const void*, vtkMTimeType> Stamp;
+    Stamp DensityStamp;
     vtkSmartPointer<vtkDataArray> Floats;
   };
   std::vector<Copy> Copies;

@@ -240,6 +240,18 @@ TEST(ChainMailDeformation, PinsAndCuts)
   double range[2];
   found->GetRange(range, -1);
   EXPECT_EQ(range[1], 0.0);
+
+  // SetArray() replaces the values of an array without changing its modification time.
+  std::vector<long long> noPins(static_cast<std::size_t>(volume->GetNumberOfPoints()), 0);
+  pinned->SetArray(noPins.data(), volume->GetNumberOfPoints(), 1);
+  dragged.Filter->Modified();
+  found = dragged.Drag(handles);
+  EXPECT_EQ(GetTuple(found, GetId(volume, 6, 5, 5)), glm::dvec3(5, 0, 0));
+  std::vector<unsigned char> inactive(static_cast<std::size_t>(volume->GetNumberOfCells()), 0);
+  active->SetArray(inactive.data(), volume->GetNumberOfCells(), 1);
+  dragged.Filter->Reset();
+  found = dragged.Update();
+  EXPECT_EQ(GetTuple(found, GetId(volume, 6, 5, 5)), glm::dvec3(0, 0, 0)); // there is no tissue
 }
 
 TEST(ChainMailDeformation, Aborted)

@@ -256,6 +256,11 @@ TEST(CarveVolume, Labels)
   labels->SetValue(0, 7);
   labels->Modified();
   EXPECT_EQ(carve.CountOff(), 0);
+  // SetArray() replaces the values without changing the modification time.
+  std::vector<short> sevens(static_cast<std::size_t>(labels->GetNumberOfTuples()), 7);
+  labels->SetArray(sevens.data(), labels->GetNumberOfTuples(), 1);
+  carve.Filter->Modified();
+  EXPECT_EQ(carve.CountOff(), 5 * volume->GetNumberOfCells());
 }
 
 // A tool that carves in several updates or in one, and a tool in a deformed volume.

@@ -73,6 +73,19 @@ TEST(DeformMasks, ActiveTetrahedra)
   active->Modified();
   EXPECT_EQ(CountCovered(deformed), all);
 
+  // SetArray() replaces the values without changing the modification time, with and without a log.
+  std::vector<unsigned char> inactive(static_cast<std::size_t>(volume->GetNumberOfCells()), 0);
+  std::vector<unsigned char> allActive(inactive.size(), 31);
+  active->SetArray(inactive.data(), volume->GetNumberOfCells(), 1);
+  deformed.Filter->Modified();
+  EXPECT_EQ(CountCovered(deformed), 0);
+  vtkNew<vtkArrayChanges> changes;
+  changes->SetArray(active);
+  active->SetArray(allActive.data(), volume->GetNumberOfCells(), 1);
+  deformed.Filter->Modified();
+  EXPECT_EQ(CountCovered(deformed), all);
+  changes->SetArray(nullptr);
+
   // Samples inside one cell of even parity, at (2, 4, 6), for each mask of its tetrahedra. Its
   // corner tetrahedra 0 to 3 are at the corners (0,0,1), (1,1,1), (1,0,0), (0,1,0).
   const int cellIndex[3] = { 2, 4, 6 };

@@ -10,6 +10,7 @@
 #include <glm/matrix.hpp>
 
 #include <vtkCellData.h>
+#include <vtkShortArray.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
@@ -433,6 +434,22 @@ TEST(ExtraArrays, Folds)
 }
 
 // In a mirrored volume all tetrahedra are inverted, but none overlap.
+// SetArray() replaces the values of an array without changing its modification time.
+TEST(ExtraArrays, ReplacedValues)
+{
+  const auto volume = MakeDose();
+  const auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  Derived subject(volume, mesh);
+  subject.Expect("");
+  auto* dose = vtkShortArray::SafeDownCast(volume->GetPointData()->GetArray("dose"));
+  std::vector<short> sevens(static_cast<std::size_t>(dose->GetNumberOfTuples()), 7);
+  dose->SetArray(sevens.data(), dose->GetNumberOfTuples(), 1);
+  subject.Filter->Modified();
+  subject.Expect("");
+  EXPECT_EQ(subject.Get("dose")->GetRange(0)[0], 7.0);
+}
+
 TEST(ExtraArrays, Mirrored)
 {
   const auto volume = MakeDose();
