@@ -253,7 +253,7 @@ Stamp GetPointsStamp(const MeshParts& parts)
     stamp.emplace_back(grid, grid->vtkObject::GetMTime());
     vtkPoints* points = grid->GetPoints();
     stamp.emplace_back(points, points ? points->GetMTime() : 0);
-    stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(grid->GetNumberOfPoints()));
+    AddArray(stamp, points ? points->GetData() : nullptr);
   }
   return stamp;
 }
@@ -268,8 +268,7 @@ Stamp GetPointVectorsStamp(const MeshParts& parts)
     stamp.emplace_back(nullptr, pointData->GetMTime());
     for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
     {
-      stamp.emplace_back(
-        nullptr, static_cast<vtkMTimeType>(pointData->GetAbstractArray(i)->GetNumberOfTuples()));
+      AddArray(stamp, pointData->GetAbstractArray(i));
     }
     // There is one vector for each point, so that vectors have to be read again if the number of
     // points changes.

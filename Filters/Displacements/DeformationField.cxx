@@ -6,6 +6,7 @@
 #include "FieldGeometry.h"
 #include "FieldReading.h"
 #include "FieldScan.h"
+#include "MeshStamp.h"
 #include "ParallelFor.h"
 #include "PipelineGeometry.h"
 #include "VectorArray.h"
@@ -56,6 +57,10 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   vtkDataArray* chosen = source.Selector(image);
   stamp.emplace_back(
     FindFloats(chosen), chosen ? static_cast<vtkMTimeType>(chosen->GetNumberOfValues()) : 0);
+  for (vtkAbstractArray* mask : FindMasks(image))
+  {
+    AddArray(stamp, mask);
+  }
   if (this->VectorsAreCurrent(stamp, source, true))
   {
     return;

@@ -3,6 +3,7 @@
 
 #include "FieldGeometry.h"
 #include "FieldReading.h"
+#include "MeshStamp.h"
 #include "NodeFaults.h"
 #include "PipelineGeometry.h"
 #include "PointDifferences.h"
@@ -95,8 +96,12 @@ void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& s
 {
   vtkDataArray* array = FindFieldVectors(image, source);
   const float* floats = FindFloats(array);
-  const Stamp stamp{ { image, image->GetMTime() }, { array, array->GetMTime() },
-    { floats, static_cast<vtkMTimeType>(array->GetNumberOfValues()) } };
+  Stamp stamp{ { image, image->GetMTime() } };
+  AddArray(stamp, array);
+  for (vtkAbstractArray* mask : FindMasks(image))
+  {
+    AddArray(stamp, mask);
+  }
   if (this->HasField && this->IsCurrent(stamp, source))
   {
     return;

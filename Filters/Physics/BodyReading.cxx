@@ -421,17 +421,17 @@ void HoldNode(double index, const glm::dvec3& displacement, const BodyMesh& mesh
 Stamp GetBodyStamp(vtkUnstructuredGrid* grid)
 {
   Stamp stamp = GetCellArraysStamp({ grid });
-  const auto add = [&](vtkObject* object)
-  { stamp.emplace_back(object, object ? object->GetMTime() : 0); };
-  add(grid->GetPoints());
+  vtkPoints* points = grid->GetPoints();
+  stamp.emplace_back(points, points ? points->GetMTime() : 0);
+  AddArray(stamp, points ? points->GetData() : nullptr);
   for (const char* name : { YoungModulusName, PoissonRatioName, DensityName })
   {
-    add(grid->GetCellData()->GetAbstractArray(name));
+    AddArray(stamp, grid->GetCellData()->GetAbstractArray(name));
   }
   for (const char* name : { FixedName, ForceName, PrescribedDisplacementName, SlidingNormalName,
          SecondSlidingNormalName })
   {
-    add(grid->GetPointData()->GetAbstractArray(name));
+    AddArray(stamp, grid->GetPointData()->GetAbstractArray(name));
   }
   return stamp;
 }

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <numeric>
 #include <utility>
 
@@ -61,14 +62,23 @@ Stamp GetMeshStamp(vtkUnstructuredGrid* grid)
 {
   Stamp stamp = GetCellArraysStamp({ grid });
   stamp.emplace_back(grid->GetPoints(), grid->GetPoints()->GetMTime());
+  AddArray(stamp, grid->GetPoints()->GetData());
   return stamp;
 }
 
 Stamp GetDataStamp(vtkUnstructuredGrid* grid)
 {
-  return { { grid->GetPointData(), grid->GetPointData()->GetMTime() },
-    { grid->GetCellData(), grid->GetCellData()->GetMTime() },
-    { grid->GetFieldData(), grid->GetFieldData()->GetMTime() } };
+  Stamp stamp;
+  for (vtkFieldData* data : std::initializer_list<vtkFieldData*>{
+         grid->GetPointData(), grid->GetCellData(), grid->GetFieldData() })
+  {
+    stamp.emplace_back(data, data->GetMTime());
+    for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+    {
+      AddArray(stamp, data->GetAbstractArray(i));
+    }
+  }
+  return stamp;
 }
 
 // Interpolates the point data of a node in the middle of an edge. The node is a ghost or hidden if

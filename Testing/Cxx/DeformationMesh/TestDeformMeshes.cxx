@@ -203,6 +203,38 @@ Grid MakeShells()
   return shells;
 }
 
+// SetArray() replaces the values of displacements and of points without changing a modification
+// time.
+TEST(DeformMeshes, ReplacedValues)
+{
+  const auto volume = MakeVolume();
+  for (const bool ofPoints : { false, true })
+  {
+    const Grid mesh = MakeBentMesh(volume);
+    const Grid rest = Grid::New();
+    rest->DeepCopy(mesh);
+    Deformed tested(volume, mesh);
+    Deformed expected(volume, mesh);
+    for (Deformed* deformed : { &tested, &expected })
+    {
+      deformed->Filter->SetRestData(ofPoints ? rest : nullptr);
+      deformed->Filter->SetOutputBoundsModeToVolumeBounds();
+    }
+    tested.Update();
+    vtkDataArray* array =
+      ofPoints ? mesh->GetPoints()->GetData() : mesh->GetPointData()->GetVectors();
+    const auto moved = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+    moved->DeepCopy(array);
+    for (vtkIdType id = 0; id < moved->GetNumberOfTuples(); ++id)
+    {
+      moved->SetComponent(id, 0, moved->GetComponent(id, 0) + 0.25);
+    }
+    array->SetVoidArray(moved->GetVoidPointer(0), array->GetNumberOfValues(), 1);
+    tested.Filter->Modified();
+    EXPECT_TRUE(AreEqual(expected.Update(), tested.Update()));
+  }
+}
+
 TEST(DeformMeshes, Blocks)
 {
   const auto volume = MakeVolume();

@@ -146,6 +146,12 @@ TEST(UndefinedVectors, Edits)
   ghosts->Modified();
   tested.Update();
   EXPECT_LT(tested.Filter->GetNumberOfCoveredVoxels(), covered);
+  // SetArray() replaces the values without changing the modification time.
+  std::vector<unsigned char> none(static_cast<std::size_t>(field->GetNumberOfPoints()), 0);
+  ghosts->SetArray(none.data(), field->GetNumberOfPoints(), 1);
+  tested.Filter->Modified();
+  tested.Update();
+  EXPECT_GT(tested.Filter->GetNumberOfCoveredVoxels(), covered);
   field->GetPointData()->GetVectors()->SetComponent(16000, 1, nan);
   field->GetPointData()->GetVectors()->Modified();
   tested.VerifyFailure("Vector 16000 of the displacement field");

@@ -460,6 +460,12 @@ TEST(ElasticDeformation, FreedNodes)
   fixed->Modified();
   EXPECT_NEAR(
     advance(0.0), fallen, 0.1 * fallen); // with its old velocity it would be 3 times as far
+  // SetArray() replaces the values without changing the modification time.
+  const double last = falling.Copy()->GetComponent(0, 2);
+  std::vector<unsigned char> all(static_cast<std::size_t>(bar->GetNumberOfPoints()), 1);
+  all.back() = 0;
+  vtkUnsignedCharArray::SafeDownCast(fixed)->SetArray(all.data(), bar->GetNumberOfPoints(), 1);
+  EXPECT_EQ(advance(9.81), last);
 }
 
 // An abort of the update after a change of the material.
