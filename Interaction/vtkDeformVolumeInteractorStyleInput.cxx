@@ -87,12 +87,14 @@ void vtkDeformVolumeInteractorStyle::OnMouseMove()
   {
     return;
   }
+  vtkInternals& internals = *this->Internals;
   if (this->State != VTKIS_NONE)
   {
     this->Superclass::OnMouseMove();
+    const int* position = this->Interactor->GetEventPosition();
+    internals.Cursor = { { position[0], position[1] } }; // a drag moves on from here
     return;
   }
-  vtkInternals& internals = *this->Internals;
   if (internals.IsPressed)
   {
     this->MoveTool();
@@ -143,7 +145,8 @@ void vtkDeformVolumeInteractorStyle::TurnWheel(int notches)
   {
     const glm::dvec3 display = GetDisplay(this->CurrentRenderer, internals.Held);
     const glm::dvec3 near = GetWorld(this->CurrentRenderer, display.x, display.y, 0.0);
-    const glm::dvec3 away = glm::normalize(internals.Held - near);
+    const glm::dvec3 far = GetWorld(this->CurrentRenderer, display.x, display.y, 1.0);
+    const glm::dvec3 away = glm::normalize(far - near); // the handle may be in front of near
     internals.Held += 0.01 * notches * this->GetDiagonal() * away;
     internals.Session->MoveGrab(
       internals.Handle, internals.Held.x, internals.Held.y, internals.Held.z);

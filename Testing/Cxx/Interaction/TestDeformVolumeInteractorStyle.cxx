@@ -13,6 +13,7 @@
 #include <vtkInteractorEventRecorder.h>
 #include <vtkMatrix4x4.h>
 #include <vtkPiecewiseFunction.h>
+#include <vtkPolyData.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 #include <vtkRenderer.h>
@@ -716,6 +717,48 @@ TEST(DeformVolumeInteractorStyle, Camera)
   viewer.Replay(Viewer::Key('h') + Viewer::Timer());
   EXPECT_TRUE(viewer.Object->GetShowHelp());
   EXPECT_EQ(viewer.SessionObject->GetNumberOfActions(), 1); // a drag without motion
+}
+
+// Finds the handles of a session: positions, and whether they are grabbed.
+vtkSmartPointer<vtkPolyData> FindHandles(Session* session)
+{
+  session->Update();
+  const auto handles = vtkSmartPointer<vtkPolyData>::New();
+  session->GetHandles(handles);
+  return handles;
+}
+
+// While the camera rotates, and when a handle is at the near plane or in front of it, a drag moves
+// the handle only by as much as the cursor and the wheel move afterwards.
+TEST(DeformVolumeInteractorStyle, CameraInDrag)
+{
+  Viewer viewer(MakeBall());
+  const auto find = [&] { return GetPoint(FindHandles(viewer.SessionObject), 0); };
+  viewer.Replay(Viewer::Key('2') + Viewer::Timer() + Viewer::Key('g') +
+    Viewer::Mouse("LeftButtonPressEvent", 10.0, 12.0) +
+    Viewer::Mouse("MouseMoveEvent", 10.5, 12.0) +
+    Viewer::Mouse("RightButtonPressEvent", 10.5, 12.0) +
+    Viewer::Mouse("MouseMoveEvent", 16.5, 12.0) +
+    Viewer::Mouse("RightButtonReleaseEvent", 16.5, 12.0));
+  const glm::dvec3 before = find();
+  viewer.Replay(Viewer::Mouse("MouseMoveEvent", 17.0, 12.0));
+  EXPECT_LT(std::abs(glm::length(find() - before) - 0.5), 1e-7);
+
+  // The wheel moves the handle away from the camera, wherever the near plane is.
+  vtkCamera* camera = viewer.Renderer->GetActiveCamera();
+  const glm::dvec3 away(camera->GetDirectionOfProjection()[0],
+    camera->GetDirectionOfProjection()[1], camera->GetDirectionOfProjection()[2]);
+  const glm::dvec3 position(
+    camera->GetPosition()[0], camera->GetPosition()[1], camera->GetPosition()[2]);
+  const double step = 0.01 * viewer.Object->GetOutput()->GetLength();
+  for (const double behind : { -0.5, 0.0, 0.5 })
+  {
+    const glm::dvec3 last = find();
+    camera->SetClippingRange(glm::dot(last - position, away) - behind, 200.0);
+    viewer.Replay(Viewer::Mouse("MouseWheelForwardEvent", 17.0, 12.0));
+    EXPECT_LT(glm::length(find() - last - step * away), 1e-7);
+  }
+  EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
 }
 
 TEST(DeformVolumeInteractorStyle, Thread)
