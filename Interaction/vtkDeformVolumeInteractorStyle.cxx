@@ -251,10 +251,23 @@ bool vtkDeformVolumeInteractorStyle::CheckSession()
   return true;
 }
 
+void vtkDeformVolumeInteractorStyle::SetCurrentRenderer(vtkRenderer* renderer)
+{
+  if (!this->Internals->IsPressed || !this->CurrentRenderer || !renderer)
+  {
+    this->Superclass::SetCurrentRenderer(renderer);
+  }
+}
+
 bool vtkDeformVolumeInteractorStyle::FindUsedRenderer()
 {
   const int* position = this->Interactor->GetEventPosition();
-  this->FindPokedRenderer(position[0], position[1]);
+  return this->FindUsedRenderer(position[0], position[1]);
+}
+
+bool vtkDeformVolumeInteractorStyle::FindUsedRenderer(int x, int y)
+{
+  this->FindPokedRenderer(x, y);
   if (!this->CurrentRenderer)
   {
     vtkErrorMacro("The window has no renderer. Call AddRenderer() of the window first.");
@@ -501,7 +514,7 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
 
 bool vtkDeformVolumeInteractorStyle::FindPosition(int x, int y, double worldPosition[3])
 {
-  if (!this->CheckInteractor() || !this->FindUsedRenderer() || !this->Internals->Output)
+  if (!this->CheckInteractor() || !this->FindUsedRenderer(x, y) || !this->Internals->Output)
   {
     return false;
   }

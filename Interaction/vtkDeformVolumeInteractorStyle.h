@@ -245,6 +245,12 @@ public:
   void SetInteractor(vtkRenderWindowInteractor* interactor) override;
   ///@}
 
+  /**
+   * Set the renderer that is used. While the button of a tool is pressed, the renderer in which it
+   * was pressed stays in use.
+   */
+  void SetCurrentRenderer(vtkRenderer* renderer) override;
+
 protected:
   vtkDeformVolumeInteractorStyle();
   ~vtkDeformVolumeInteractorStyle() override;
@@ -256,6 +262,7 @@ private:
   bool CheckInteractor();
   bool CheckSession();
   bool FindUsedRenderer();
+  bool FindUsedRenderer(int x, int y);
   void ShowOutput();
   void UpdateOverlay();
   void BeginTool();

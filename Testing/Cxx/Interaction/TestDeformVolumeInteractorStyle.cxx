@@ -761,6 +761,40 @@ TEST(DeformVolumeInteractorStyle, CameraInDrag)
   EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
 }
 
+// A stroke belongs to the viewport in which it begins, also where it leaves this viewport, and
+// FindPosition() uses the viewport of its arguments.
+TEST(DeformVolumeInteractorStyle, Viewports)
+{
+  Viewer viewer(MakeBall());
+  vtkNew<vtkRenderer> right;
+  viewer.Renderer->SetViewport(0.0, 0.0, 0.5, 1.0);
+  right->SetViewport(0.5, 0.0, 1.0, 1.0);
+  right->GetActiveCamera()->SetFocalPoint(Middle);
+  right->GetActiveCamera()->SetPosition(Middle[0], Middle[1] - 100.0, Middle[2]);
+  right->GetActiveCamera()->SetViewUp(0.0, 0.0, 1.0);
+  viewer.Window->AddRenderer(right);
+  // x = Middle[0] is the middle of the window. The left viewport shows its own Middle at x = 2.5.
+  viewer.Replay(Viewer::Key('c') + Viewer::Mouse("LeftButtonPressEvent", 2.5, 9.0) +
+    Viewer::Mouse("MouseMoveEvent", 2.5, 17.0) + Viewer::Mouse("MouseMoveEvent", 15.0, 17.0) +
+    Viewer::Mouse("LeftButtonReleaseEvent", 15.0, 17.0) + Viewer::Timer());
+  EXPECT_EQ(viewer.Object->GetMessage(), "");
+  EXPECT_TRUE(viewer.SessionObject->SaveSession(GetSessionFile()));
+  const std::vector<Event> events = ReadEvents(GetSessionFile());
+  const auto cut = std::find_if(
+    events.begin(), events.end(), [](const Event& event) { return event.Name == "Cut"; });
+  ASSERT_TRUE(cut != events.end());
+  const double top = 17.0 + 2.0; // two voxels above the body
+  EXPECT_TRUE(IsWanted(*cut, { "Cut", { 6.0, 12.5, 9.0, top } }));
+  const std::vector<double> last(cut->Numbers.begin() + 13, cut->Numbers.begin() + 16);
+  EXPECT_TRUE(IsWanted({ "Last", last }, { "Last", { 25.0, 17.0, top } }));
+
+  viewer.Replay(Viewer::Key('t') + Viewer::Mouse("MouseMoveEvent", 15.0, 9.0)); // cursor right
+  double position[3] = { 0.0, 0.0, 0.0 };
+  EXPECT_TRUE(viewer.Object->FindPosition(WindowSize / 4, WindowSize / 2, position));
+  EXPECT_EQ(position[2], 17.0);
+  EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+}
+
 TEST(DeformVolumeInteractorStyle, Thread)
 {
   Viewer viewer(MakeBall());
