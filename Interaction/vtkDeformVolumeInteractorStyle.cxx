@@ -359,14 +359,24 @@ std::string vtkDeformVolumeInteractorStyle::GetStatus()
 bool vtkDeformVolumeInteractorStyle::Poll()
 {
   vtkInternals& internals = *this->Internals;
-  if (!internals.Session || !this->Interactor || !this->Interactor->GetRenderWindow())
+  const vtkSmartPointer<Session> session = internals.Session;
+  // Observers of the events below may replace or remove the session and the interactor.
+  const auto isConnected = [&]
+  {
+    return session && internals.Session == session && this->Interactor &&
+      this->Interactor->GetRenderWindow();
+  };
+  if (!isConnected())
   {
     return false;
   }
-  Session* session = internals.Session;
   if (!session->GetIsRunning() && session->GetIsBusy())
   {
     session->Update();
+    if (!isConnected())
+    {
+      return false;
+    }
   }
   // Call GetIsBusy() before TakeOutput(): if the session is not busy, its last output is available.
   const bool isBusy = session->GetIsBusy();
@@ -376,6 +386,10 @@ bool vtkDeformVolumeInteractorStyle::Poll()
     this->ShowOutput();
     internals.IsChanged = true;
     this->InvokeEvent(vtkCommand::UpdateDataEvent);
+    if (!isConnected())
+    {
+      return false;
+    }
   }
   if (!isBusy)
   {
@@ -405,8 +419,11 @@ bool vtkDeformVolumeInteractorStyle::Poll()
     this->Interactor->GetRenderWindow()->SetDesiredUpdateRate(
       isBusy ? this->Interactor->GetDesiredUpdateRate() : this->Interactor->GetStillUpdateRate());
   }
-  this->UpdateOverlay();
-  if (!internals.IsChanged)
+  if (this->UpdateOverlay())
+  {
+    this->InvokeEvent(vtkCommand::UpdateInformationEvent);
+  }
+  if (!internals.IsChanged || !isConnected())
   {
     return false;
   }
@@ -441,7 +458,7 @@ void vtkDeformVolumeInteractorStyle::ShowOutput()
   }
 }
 
-void vtkDeformVolumeInteractorStyle::UpdateOverlay()
+bool vtkDeformVolumeInteractorStyle::UpdateOverlay()
 {
   vtkInternals& internals = *this->Internals;
   if (!this->CurrentRenderer)
@@ -451,21 +468,18 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
   }
   if (!this->CurrentRenderer)
   {
-    return;
+    return false;
   }
   StyleOverlay& overlay = internals.Overlay;
   overlay.SetRenderer(this->CurrentRenderer);
-  if (overlay.SetStatus(this->ShowStatus ? this->GetStatus() : ""))
-  {
-    internals.IsChanged = true;
-    this->InvokeEvent(vtkCommand::UpdateInformationEvent);
-  }
+  const bool hasNewStatus = overlay.SetStatus(this->ShowStatus ? this->GetStatus() : "");
   std::string help = KeyHelp;
   help += this->AdditionalHelp.empty() ? "" : '\n' + this->AdditionalHelp;
-  internals.IsChanged = overlay.SetHelp(this->ShowHelp ? help : "") || internals.IsChanged;
+  const bool hasNewHelp = overlay.SetHelp(this->ShowHelp ? help : "");
+  internals.IsChanged = internals.IsChanged || hasNewStatus || hasNewHelp;
   if (!internals.IsChanged)
   {
-    return;
+    return false;
   }
 
   overlay.ClearMarks();
@@ -510,6 +524,7 @@ void vtkDeformVolumeInteractorStyle::UpdateOverlay()
     }
     overlay.AddLine(circle, StrokeColor);
   }
+  return hasNewStatus;
 }
 
 bool vtkDeformVolumeInteractorStyle::FindPosition(int x, int y, double worldPosition[3])

@@ -264,7 +264,7 @@ private:
   bool FindUsedRenderer();
   bool FindUsedRenderer(int x, int y);
   void ShowOutput();
-  void UpdateOverlay();
+  bool UpdateOverlay(); // returns whether the status has changed
   void BeginTool();
   void MoveTool();
   void EndTool(bool isHeld);

@@ -7,6 +7,7 @@
 #include "vtkDeformVolumeInteractorStyle.h"
 #include "vtkDeformVolumeSession.h"
 
+#include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkColorTransferFunction.h>
 #include <vtkGPUVolumeRayCastMapper.h>
@@ -759,6 +760,39 @@ TEST(DeformVolumeInteractorStyle, CameraInDrag)
     EXPECT_LT(glm::length(find() - last - step * away), 1e-7);
   }
   EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+}
+
+// Observers may remove the session or the interactor while Poll() shows an output.
+TEST(DeformVolumeInteractorStyle, RemovedByObserver)
+{
+  for (const unsigned long event :
+    { vtkCommand::UpdateDataEvent, vtkCommand::UpdateInformationEvent })
+  {
+    for (const bool removesSession : { true, false })
+    {
+      Viewer viewer(MakeBall());
+      vtkNew<vtkCallbackCommand> remove;
+      remove->SetClientData(removesSession ? nullptr : viewer.Interactor.Get());
+      remove->SetCallback(
+        [](vtkObject* style, unsigned long, void* interactor, void*)
+        {
+          if (interactor)
+          {
+            static_cast<vtkRenderWindowInteractor*>(interactor)->SetInteractorStyle(nullptr);
+          }
+          else
+          {
+            static_cast<Style*>(style)->SetSession(nullptr);
+          }
+        });
+      viewer.Object->AddObserver(event, remove);
+      viewer.SessionObject->CarveSphere(5, 20, 18, 1.0);
+      viewer.Object->Poll();
+      EXPECT_EQ(viewer.Object->GetSession() == nullptr, removesSession);
+      EXPECT_EQ(viewer.Object->GetInteractor() == nullptr, !removesSession);
+      EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+    }
+  }
 }
 
 // A stroke belongs to the viewport in which it begins, also where it leaves this viewport, and
