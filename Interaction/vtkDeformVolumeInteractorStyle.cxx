@@ -103,6 +103,16 @@ void vtkDeformVolumeInteractorStyle::vtkInternals::EndPress()
   this->IsChanged = true;
 }
 
+void vtkDeformVolumeInteractorStyle::vtkInternals::CancelPress()
+{
+  const int handle = this->Handle;
+  this->EndPress();
+  if (handle >= 0)
+  {
+    this->Session->EndGrab(handle);
+  }
+}
+
 vtkIdType vtkDeformVolumeInteractorStyle::vtkInternals::FindVoxel(
   const vtkDeformVolumeInteractorStyle* style, vtkImageData* image,
   const deformvolume::LineOfSight& line) const
@@ -153,6 +163,7 @@ void vtkDeformVolumeInteractorStyle::SetSession(vtkDeformVolumeSession* session)
   {
     return;
   }
+  internals.CancelPress();
   if (internals.Session)
   {
     internals.Session->RemoveObserver(internals.SessionObserver);
@@ -198,7 +209,7 @@ void vtkDeformVolumeInteractorStyle::SetInteractor(vtkRenderWindowInteractor* in
     this->Interactor->DestroyTimer(internals.TimerId);
     internals.TimerId = -1;
   }
-  internals.EndPress();
+  internals.CancelPress();
   internals.Overlay.SetRenderer(nullptr);
   this->Superclass::SetInteractor(interactor);
 }

@@ -73,7 +73,7 @@ public:
 
   ///@{
   /**
-   * Set/Get the session. Default null.
+   * Set/Get the session. Default null. A drag with the former session ends.
    */
   virtual void SetSession(vtkDeformVolumeSession* session);
   vtkDeformVolumeSession* GetSession();

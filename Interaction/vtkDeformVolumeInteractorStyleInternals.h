@@ -55,6 +55,8 @@ public:
   std::vector<std::pair<int, glm::dvec3>> GetHandles() const;
   /// Resets the state of the tool after the button was released.
   void EndPress();
+  /// Releases the handle that is dragged, and forgets an unfinished stroke.
+  void CancelPress();
 
   /// Returns the visible voxel on a line of sight, by the PickMode of a style; -1 if there is none.
   vtkIdType FindVoxel(const vtkDeformVolumeInteractorStyle* style, vtkImageData* image,

@@ -64,7 +64,7 @@ void vtkDeformVolumeInteractorStyle::BeginTool()
   vtkInternals& internals = *this->Internals;
   const int x = this->Interactor->GetEventPosition()[0];
   const int y = this->Interactor->GetEventPosition()[1];
-  internals.EndPress();
+  internals.CancelPress(); // the release of the last press may have been lost
   this->ShowMessage("");
   if (!internals.Output)
   {

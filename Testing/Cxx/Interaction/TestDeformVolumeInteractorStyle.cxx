@@ -12,6 +12,7 @@
 #include <vtkColorTransferFunction.h>
 #include <vtkGPUVolumeRayCastMapper.h>
 #include <vtkInteractorEventRecorder.h>
+#include <vtkInteractorStyleTrackballCamera.h>
 #include <vtkMatrix4x4.h>
 #include <vtkPiecewiseFunction.h>
 #include <vtkPolyData.h>
@@ -759,6 +760,43 @@ TEST(DeformVolumeInteractorStyle, CameraInDrag)
     viewer.Replay(Viewer::Mouse("MouseWheelForwardEvent", 17.0, 12.0));
     EXPECT_LT(glm::length(find() - last - step * away), 1e-7);
   }
+  EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
+}
+
+// A drag ends if the session or the interactor is replaced, or if the release of the button was
+// lost. Another style then gets the events.
+TEST(DeformVolumeInteractorStyle, InterruptedDrag)
+{
+  Viewer viewer(MakeBall());
+  vtkNew<vtkDeformVolumeSession> other;
+  EXPECT_TRUE(other->SetInputs(MakeBall()));
+  vtkNew<vtkInteractorStyleTrackballCamera> camera;
+  viewer.Replay(Viewer::Key('2') + Viewer::Timer() + Viewer::Key('g'));
+  const std::string drag =
+    Viewer::Mouse("LeftButtonPressEvent", 10.0, 12.0) + Viewer::Mouse("MouseMoveEvent", 10.5, 12.0);
+  const auto isGrabbed = [&]
+  {
+    const auto handles = FindHandles(viewer.SessionObject);
+    EXPECT_LE(handles->GetNumberOfPoints(), 1);
+    return handles->GetNumberOfPoints() > 0 &&
+      handles->GetPointData()->GetArray("Grabbed")->GetComponent(0, 0) != 0.0;
+  };
+  viewer.Replay(drag);
+  EXPECT_TRUE(isGrabbed());
+  viewer.Replay(drag); // without a release
+  EXPECT_TRUE(isGrabbed());
+  viewer.Object->SetSession(other);
+  EXPECT_FALSE(isGrabbed());
+  viewer.Object->SetSession(viewer.SessionObject);
+  viewer.SessionObject->ChangeModel(Session::CHAIN_MAIL);
+  viewer.Object->Poll();
+  viewer.Replay(drag);
+  EXPECT_TRUE(isGrabbed());
+  viewer.Interactor->SetInteractorStyle(camera);
+  EXPECT_FALSE(isGrabbed());
+  const double scale = viewer.Renderer->GetActiveCamera()->GetParallelScale();
+  viewer.Replay(Viewer::Mouse("MouseWheelForwardEvent", 5, 5));
+  EXPECT_LT(viewer.Renderer->GetActiveCamera()->GetParallelScale(), scale);
   EXPECT_TRUE(!viewer.Errors->GetError() && !viewer.SessionErrors->GetError());
 }
 
