@@ -124,21 +124,22 @@ std::string GetReason()
 // Makes an empty file and returns its name: `name`, or with a number if such a file exists.
 std::string MakeFile(const std::string& name, const std::string& target)
 {
-  std::string unused = name;
-  std::FILE* file = nullptr;
-  for (int i = 1; !file; ++i)
+  for (int number = 0;; ++number)
   {
+    const std::string path = number == 0 ? name : name + std::to_string(number);
     errno = 0;
-    file = vtksys::SystemTools::Fopen(unused, "wx"); // x: fails if the file exists
-    if (!file && errno != EEXIST)
+    std::FILE* const file = vtksys::SystemTools::Fopen(path, "wx"); // x: fails if the file exists
+    if (file)
+    {
+      std::fclose(file);
+      return path;
+    }
+    if (errno != EEXIST)
     {
       throw std::runtime_error("The file " + target + " cannot be written" + GetReason() +
         ". Choose a folder that can be written and has space.");
     }
-    unused = file ? unused : name + std::to_string(i);
   }
-  std::fclose(file);
-  return unused;
 }
 
 std::string GetAttribute(vtkXMLDataElement* element, const char* name)
