@@ -144,7 +144,7 @@ KernelCacheLock::KernelCacheLock(bool isUsed)
   while (Lock >= 0 && flock(Lock, LOCK_EX | LOCK_NB) != 0 &&
     (errno == EWOULDBLOCK || errno == EINTR) && std::chrono::steady_clock::now() < end)
   {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
 
