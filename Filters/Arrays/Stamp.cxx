@@ -4,6 +4,7 @@
 #include "VolumeArrays.h"
 
 #include "vtkDataArray.h"
+#include "vtkPoints.h"
 
 namespace deformvolume
 {
@@ -15,6 +16,12 @@ void AddArray(Stamp& stamp, vtkAbstractArray* array)
   vtkDataArray* numbers = vtkDataArray::SafeDownCast(array);
   stamp.emplace_back(numbers ? GetWritableValues(numbers) : nullptr,
     array ? static_cast<vtkMTimeType>(array->GetNumberOfValues()) : 0);
+}
+
+void AddPoints(Stamp& stamp, vtkPoints* points)
+{
+  stamp.emplace_back(points, points ? points->vtkObject::GetMTime() : 0);
+  AddArray(stamp, points ? points->GetData() : nullptr);
 }
 
 } // namespace deformvolume

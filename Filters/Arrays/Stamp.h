@@ -8,6 +8,7 @@
 #include <vector>
 
 class vtkAbstractArray;
+class vtkPoints;
 
 namespace deformvolume
 {
@@ -19,6 +20,9 @@ using Stamp = std::vector<std::pair<const void*, vtkMTimeType>>;
 /// Adds an array, or null, to a stamp: two entries, of which the second one also differs if the
 /// array has other memory or another size.
 void AddArray(Stamp& stamp, vtkAbstractArray* array);
+
+/// Adds points, or null, and their array to a stamp.
+void AddPoints(Stamp& stamp, vtkPoints* points);
 
 } // namespace deformvolume
 

@@ -251,9 +251,7 @@ Stamp GetPointsStamp(const MeshParts& parts)
   for (vtkUnstructuredGrid* grid : parts)
   {
     stamp.emplace_back(grid, grid->vtkObject::GetMTime());
-    vtkPoints* points = grid->GetPoints();
-    stamp.emplace_back(points, points ? points->GetMTime() : 0);
-    AddArray(stamp, points ? points->GetData() : nullptr);
+    AddPoints(stamp, grid->GetPoints());
   }
   return stamp;
 }

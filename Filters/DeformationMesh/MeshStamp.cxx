@@ -27,16 +27,21 @@ std::array<vtkAbstractArray*, 3> FindMasks(vtkDataSet* grid)
     grid->GetPointData()->GetAbstractArray(ValidPointMaskName) } };
 }
 
+void AddMasks(Stamp& stamp, vtkDataSet* grid)
+{
+  for (vtkAbstractArray* mask : FindMasks(grid))
+  {
+    AddArray(stamp, mask);
+  }
+}
+
 Stamp GetCellFormStamp(vtkUnstructuredGrid* grid)
 {
   Stamp stamp;
   stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(grid->GetNumberOfCells()));
   AddArray(stamp, grid->GetCells() ? grid->GetCells()->GetOffsetsArray() : nullptr);
   AddArray(stamp, GetCellTypes(grid));
-  for (vtkAbstractArray* mask : FindMasks(grid))
-  {
-    AddArray(stamp, mask);
-  }
+  AddMasks(stamp, grid);
   AddArray(stamp, grid->GetCellData()->GetHigherOrderDegrees());
   if (HasPolyhedronFaces(grid))
   {
@@ -83,9 +88,7 @@ MeshStamp MeshStamp::OfPoints(const MeshParts& parts, bool made)
   for (vtkUnstructuredGrid* grid : parts)
   {
     stamp.Add(grid, made);
-    vtkPoints* points = grid->GetPoints();
-    stamp.Arrays.emplace_back(points, points ? points->vtkObject::GetMTime() : 0);
-    AddArray(stamp.Arrays, points ? points->GetData() : nullptr);
+    AddPoints(stamp.Arrays, grid->GetPoints());
   }
   return stamp;
 }

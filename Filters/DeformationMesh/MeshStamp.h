@@ -15,6 +15,8 @@ namespace deformvolume
 
 /// The arrays that mark cells as SkippedCells; null for those that do not exist.
 std::array<vtkAbstractArray*, 3> FindMasks(vtkDataSet* grid);
+/// Adds these arrays to a stamp.
+void AddMasks(Stamp& stamp, vtkDataSet* grid);
 
 /// Stamp of the arrays of a grid's cells without the connectivity: arrays, modification times and
 /// sizes.

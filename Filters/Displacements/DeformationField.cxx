@@ -53,14 +53,8 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
 {
   vtkPointData* pointData = image->GetPointData();
   Stamp stamp{ { image, image->GetMTime() }, { nullptr, pointData->GetMTime() } };
-  // The modification time does not change if an array gets other memory or is truncated.
-  vtkDataArray* chosen = source.Selector(image);
-  stamp.emplace_back(
-    FindFloats(chosen), chosen ? static_cast<vtkMTimeType>(chosen->GetNumberOfValues()) : 0);
-  for (vtkAbstractArray* mask : FindMasks(image))
-  {
-    AddArray(stamp, mask);
-  }
+  AddArray(stamp, source.Selector(image));
+  AddMasks(stamp, image);
   if (this->VectorsAreCurrent(stamp, source, true))
   {
     return;

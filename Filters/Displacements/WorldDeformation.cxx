@@ -98,10 +98,7 @@ void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& s
   const float* floats = FindFloats(array);
   Stamp stamp{ { image, image->GetMTime() } };
   AddArray(stamp, array);
-  for (vtkAbstractArray* mask : FindMasks(image))
-  {
-    AddArray(stamp, mask);
-  }
+  AddMasks(stamp, image);
   if (this->HasField && this->IsCurrent(stamp, source))
   {
     return;

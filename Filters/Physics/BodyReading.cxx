@@ -421,9 +421,7 @@ void HoldNode(double index, const glm::dvec3& displacement, const BodyMesh& mesh
 Stamp GetBodyStamp(vtkUnstructuredGrid* grid)
 {
   Stamp stamp = GetCellArraysStamp({ grid });
-  vtkPoints* points = grid->GetPoints();
-  stamp.emplace_back(points, points ? points->GetMTime() : 0);
-  AddArray(stamp, points ? points->GetData() : nullptr);
+  AddPoints(stamp, grid->GetPoints());
   for (const char* name : { YoungModulusName, PoissonRatioName, DensityName })
   {
     AddArray(stamp, grid->GetCellData()->GetAbstractArray(name));

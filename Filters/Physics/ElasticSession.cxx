@@ -61,8 +61,7 @@ void AppendCopies(std::vector<Value>& values, const std::vector<std::int32_t>& o
 Stamp GetMeshStamp(vtkUnstructuredGrid* grid)
 {
   Stamp stamp = GetCellArraysStamp({ grid });
-  stamp.emplace_back(grid->GetPoints(), grid->GetPoints()->GetMTime());
-  AddArray(stamp, grid->GetPoints()->GetData());
+  AddPoints(stamp, grid->GetPoints());
   return stamp;
 }
 
