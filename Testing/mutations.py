@@ -467,7 +467,7 @@ MUTATIONS = {
                         ["Cxx.TestUndefinedVectors"]),
     "field-spacing": ("Filters/Displacements/DeformationField.cxx", "lastSpacing != this->FieldSpacing || ",
                       "lastSpacing != lastSpacing || ", ["Cxx.TestUndefinedVectors"]),
-    "rest-points-kept": ("Filters/DeformationMesh/RestMesh.cxx", "kept && !this->ShapeIsOld", "kept",
+    "rest-points-kept": ("Filters/DeformationMesh/RestMesh.cxx", "this->KeptPoints && !hasFailed", "this->KeptPoints",
                          ["Cxx.TestArrayChanges"]),
     "resampler-error": ("Filters/DeformVolume/vtkDeformVolumeFilterInternals.cxx",
                         "catch (const deformvolume::MemoryError&)\n      {", "catch (const Error&)\n      {",

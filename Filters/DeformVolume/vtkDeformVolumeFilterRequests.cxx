@@ -377,56 +377,53 @@ int vtkDeformVolumeFilter::RequestData(
   }
   deformvolume::DeformReport report;
   deformvolume::ExtraArrays::Loss loss;
-  const auto deform = [&]
-  {
-    checkMemory(request.OutputExtent, request.Method);
-    state.Extra.Compute(
-      deformation, state.Mapping, mapped, source.ToOutput, this->Internals->GetProgress(0.0, 0.3));
-    device.SetVolume(voxelGrid, maskedVolume, arrays, this->BackgroundValue, deformation,
-      mapped.Outside, request.Method);
-    if (request.Method == deformvolume::Resampling::MeshRasterization)
-    {
-      if (!deformation.IsField())
-      {
-        deformvolume::CheckBoxes(deformation.GetMeshAtRest(), geometry);
-      }
-      device.SetRestMesh(deformation, mapped.Outside);
-    }
-    else
-    {
-      device.SetDeformation(deformation, state.Mapping, mapped, this->OpenSplits,
-        this->Internals->GetProgress(0.0, 0.3));
-    }
-    request.Progress = this->Internals->GetProgress(0.3, 1.0);
-    request.Compiling = this->Internals->GetCompilationReport();
-    if (!request.Progress(0.0))
-    {
-      throw deformvolume::Aborted();
-    }
-
-    const ImageGeometry outputGeometry = this->Internals->GetOutputGeometry(geometry);
-    image->SetExtent(request.OutputExtent.data());
-    deformvolume::SetTransform(image, outputGeometry);
-    image->GetFieldData()->ShallowCopy(volume->GetFieldData());
-    state.Outputs.Make(arrays, request);
-    // Samples that folds hide are counted only if the whole output is resampled.
-    request.Incremental =
-      this->Incremental && !this->GenerateFoldCount && this->Internals->DensityArrays.empty();
-    request.FoldCounts = state.Extra.MakeFoldCounts(numberOfPoints);
-    request.MayStayOnDevice = this->OutputOnDevice;
-
-    report = device.Deform(request);
-    state.Outputs.Give(report, image);
-    deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
-    loss = state.Extra.Finish(deformation, mapped.Outside, this->BackgroundValue, image);
-  };
   ranks.Attempt(
     [&]
     {
-      if (numberOfPoints > 0)
+      if (numberOfPoints == 0)
       {
-        deform();
+        return;
       }
+      checkMemory(request.OutputExtent, request.Method);
+      state.Extra.Compute(deformation, state.Mapping, mapped, source.ToOutput,
+        this->Internals->GetProgress(0.0, 0.3));
+      device.SetVolume(voxelGrid, maskedVolume, arrays, this->BackgroundValue, deformation,
+        mapped.Outside, request.Method);
+      if (request.Method == deformvolume::Resampling::MeshRasterization)
+      {
+        if (!deformation.IsField())
+        {
+          deformvolume::CheckBoxes(deformation.GetMeshAtRest(), geometry);
+        }
+        device.SetRestMesh(deformation, mapped.Outside);
+      }
+      else
+      {
+        device.SetDeformation(deformation, state.Mapping, mapped, this->OpenSplits,
+          this->Internals->GetProgress(0.0, 0.3));
+      }
+      request.Progress = this->Internals->GetProgress(0.3, 1.0);
+      request.Compiling = this->Internals->GetCompilationReport();
+      if (!request.Progress(0.0))
+      {
+        throw deformvolume::Aborted();
+      }
+
+      const ImageGeometry outputGeometry = this->Internals->GetOutputGeometry(geometry);
+      image->SetExtent(request.OutputExtent.data());
+      deformvolume::SetTransform(image, outputGeometry);
+      image->GetFieldData()->ShallowCopy(volume->GetFieldData());
+      state.Outputs.Make(arrays, request);
+      // Samples that folds hide are counted only if the whole output is resampled.
+      request.Incremental =
+        this->Incremental && !this->GenerateFoldCount && this->Internals->DensityArrays.empty();
+      request.FoldCounts = state.Extra.MakeFoldCounts(numberOfPoints);
+      request.MayStayOnDevice = this->OutputOnDevice;
+
+      report = device.Deform(request);
+      state.Outputs.Give(report, image);
+      deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
+      loss = state.Extra.Finish(deformation, mapped.Outside, this->BackgroundValue, image);
     });
   if (numberOfPoints > 0)
   {

@@ -107,6 +107,8 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
     this->Derived = DerivedNodes();
   }
   const bool haveRead = this->ReadPoints(rest, source, nodesBefore);
+  // After a failure, what was computed from the points may be older than the points.
+  this->KeptPoints = this->KeptPoints && !hasFailed;
   const bool isSameShape = !this->ShapeIsOld && this->KeptPoints && this->HaveSameShape(cells);
   if (cells.Derived)
   {
@@ -263,8 +265,7 @@ void RestMesh::UpdateDerivedPoints(std::size_t nodes)
 bool RestMesh::ReadPoints(
   const MeshParts& rest, const DeformationSource& source, std::size_t before)
 {
-  // After a failure, what was computed from the points may be older than the points.
-  this->KeptPoints = !this->ShapeIsOld;
+  this->KeptPoints = true;
   const MeshStamp stamp = MeshStamp::OfPoints(rest, IsRestMade(source));
   if (stamp.IsThatOf(this->PointsStamp) && source.Volume == this->Volume)
   {
@@ -291,7 +292,7 @@ bool RestMesh::ReadPoints(
     this->PointMemories.clear();
     throw;
   }
-  this->KeptPoints = kept && !this->ShapeIsOld;
+  this->KeptPoints = kept;
   this->PointsStamp = stamp;
   this->Volume = source.Volume;
   return true;

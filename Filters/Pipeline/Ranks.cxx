@@ -165,14 +165,12 @@ void Ranks::ShareProcessors() const
   // Once for each number of ranks, since ranks do not move to other machines.
   static std::mutex mutex;
   static std::set<int> counts;
-  const auto isDone = [&](bool adds)
   {
     const std::lock_guard<std::mutex> lock(mutex);
-    return adds ? !counts.insert(this->Count).second : counts.count(this->Count) > 0;
-  };
-  if (isDone(false))
-  {
-    return;
+    if (counts.count(this->Count) > 0)
+    {
+      return;
+    }
   }
   constexpr std::size_t length = 256;
   std::array<char, length> name{};
@@ -184,7 +182,8 @@ void Ranks::ShareProcessors() const
     here += std::equal(name.begin(), name.end(), names.begin() + rank * static_cast<int>(length));
   }
   deformvolume::ShareProcessors(here);
-  isDone(true);
+  const std::lock_guard<std::mutex> lock(mutex);
+  counts.insert(this->Count);
 }
 
 void Ranks::ShareProcessorsAlone() const

@@ -433,7 +433,6 @@ TEST(ExtraArrays, Folds)
   subject.Expect("");
 }
 
-// In a mirrored volume all tetrahedra are inverted, but none overlap.
 // SetArray() replaces the values of an array without changing its modification time.
 TEST(ExtraArrays, ReplacedValues)
 {
@@ -450,6 +449,7 @@ TEST(ExtraArrays, ReplacedValues)
   EXPECT_EQ(subject.Get("dose")->GetRange(0)[0], 7.0);
 }
 
+// In a mirrored volume all tetrahedra are inverted, but none overlap.
 TEST(ExtraArrays, Mirrored)
 {
   const auto volume = MakeDose();
