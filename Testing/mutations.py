@@ -99,9 +99,8 @@ MUTATIONS = {
     "filter-bent": ("Kernels/Resampling/PacketWeights.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
     "mask-halo": ("Kernels/Incremental/IncrementalChanges.cxx", "MaskHalo = 1;", "MaskHalo = 0;", [MASKS]),
     "old-winners": ("Kernels/Output/OutputWinners.cxx",
-                    "    FillPatches(context, this->Queue, this->Keys,\n"
-                    "      ElementBytes::Of(std::numeric_limits<cl_uint>::max()), this->KeySize / sizeof(cl_uint), list,\n"
-                    "      patches.size(), parameters, events);\n", "", [FOLDS]),
+                    "    FillPatches(launches, this->Keys, ElementBytes::Of(std::numeric_limits<cl_uint>::max()),\n"
+                    "      this->KeySize / sizeof(cl_uint), list, patches.size(), parameters);\n", "", [FOLDS]),
     "counts-of-cuboids": ("Kernels/Resampling/Resampling.cl", "AddCounts(&output, section + span,",
                           "AddCounts(&output, section,", [BY_CELL]),
     "output-elsewhere": ("Kernels/Output/OutputMemory.cxx",
@@ -111,7 +110,7 @@ MUTATIONS = {
     "contested-twice": ("Kernels/Output/VoxelWinners.cl", "      return found == key;\n    }\n    const KEY seen",
                         "      return key == (found & ~CONTESTED);\n    }\n    const KEY seen", [FOLDS]),
     "winners-not-awaited": ("Kernels/Resampling/ExactResampler.cxx",
-                            "this->Device.GetQueue().finish(); // the output is read in another queue", "", [FOLDS]),
+                            "this->Launched.GetQueue().finish(); // the output is read in another queue", "", [FOLDS]),
     "clip": ("Kernels/Resampling/Resampling.cl", "CLIP_TOLERANCE (1.0f / 64.0f)", "CLIP_TOLERANCE 0.0f", [LARGE]),
     "cubic-interior": ("Kernels/Resampling/Resampling.cl", "if (cell->State.Interior != 255)", "if (!cell->State.Interior)",
         [CUBIC]),
@@ -157,8 +156,8 @@ MUTATIONS = {
     "far-output": ("Kernels/Output/OutputSlab.cxx", "farthest = 1 << 22;", "farthest = 1 << 28;",
                    [("TestUse", "DeformerUse.OutputsFarAway")]),
     "null-group": ("Kernels/Output/OutputFilling.cxx",
-                   "queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));",
-                   "queue, kernel, cl::NDRange(items), cl::NullRange));", [GRAPHICS]),
+                   "kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group));",
+                   "kernel, cl::NDRange(items), cl::NullRange);", [GRAPHICS]),
     "far-vertices": ("Kernels/Resampling/PacketCandidates.cl", "TO_INTS(Least((high) + toEnd, (float)(size)))",
                      "min(TO_INTS((high) + toEnd), (INTS)(size))", [("TestFolded", "*AtTheEdge*")]),
     "raster-last": ("Kernels/Rasterization/MeshRasterization.cl", "begin < listed; begin +=", "begin + DEFORMVOLUME_TILE_SHARED <= listed; begin +=",

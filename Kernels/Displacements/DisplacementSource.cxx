@@ -523,20 +523,21 @@ cl_uint DisplacementSource::SetPointArguments(
     mesh ? this->Nodes.Get() : this->FieldVectors.Get(), dimensions);
 }
 
-void DisplacementSource::PrepareMapping(
-  std::vector<cl::Event>& events, const std::vector<cl_uint>* bricks)
+cl::Event DisplacementSource::PrepareMapping(const std::vector<cl_uint>* bricks)
 {
   const cl::Program mapping = GetMappingProgram(this->Device.GetContext(), this->GetMappingForm(),
     this->Volume.GetMasks().HasCut(), this->Volume.HasTurnedAxes());
   TetrahedronRecords& records = this->Volume.GetRecords();
+  cl::Event launched;
   if (this->Volume.HasRuns() && !records.AreCurrent())
   {
-    events.push_back(records.Evaluate(mapping, this->Tetrahedra, this->Nodes.Get()));
+    launched = records.Evaluate(mapping, this->Tetrahedra, this->Nodes.Get());
   }
   const auto set = [this](cl::Kernel& kernel, const VolumeChunk& chunk)
   { return this->SetMappingArguments(kernel, chunk); };
   this->Volume.UpdateState(mapping, this->Field.Extrapolate || this->Field.SameGrid, set);
   this->Volume.UpdateCut(mapping, bricks, set);
+  return launched;
 }
 
 BrickPoints DisplacementSource::MakeBrickPoints() const

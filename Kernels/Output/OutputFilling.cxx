@@ -14,29 +14,30 @@ namespace
 {
 
 // Makes a kernel for elements of the size of a value, which is its third argument.
-cl::Kernel MakeKernel(OpenCLContext& context, const std::string& name, const ElementBytes& value)
+cl::Kernel MakeKernel(Launches& launches, const std::string& name, const ElementBytes& value)
 {
-  cl::Kernel kernel(GetOutputProgram(context), (name + std::to_string(value.Size)).c_str());
+  cl::Kernel kernel(
+    GetOutputProgram(launches.GetContext()), (name + std::to_string(value.Size)).c_str());
   kernel.setArg(2, value.Size, value.Bytes.data());
   return kernel;
 }
 
 } // namespace
 
-void LaunchPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
-  std::size_t count, std::vector<cl::Event>& events)
+void LaunchPatches(Launches& launches, const cl::Kernel& kernel, std::size_t count)
 {
   constexpr std::size_t group = DEFORMVOLUME_PATCH * DEFORMVOLUME_PATCH;
-  events.push_back(context.Launch(queue, kernel, cl::NDRange(group * count), cl::NDRange(group)));
+  launches.Launch(kernel, cl::NDRange(group * count), cl::NDRange(group));
 }
 
-void LaunchSteps(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Kernel& kernel,
-  std::uint64_t size, std::uint64_t step, std::vector<cl::Event>& events)
+void LaunchSteps(
+  Launches& launches, const cl::Kernel& kernel, std::uint64_t size, std::uint64_t step)
 {
   constexpr std::uint64_t itemsOfUnit = 2048;
   const std::uint64_t steps = (size + step - 1) / step;
-  LaunchBusyItems(context, queue, kernel,
-    static_cast<std::size_t>(std::min(steps, context.GetNumberOfUnits() * itemsOfUnit)), events);
+  LaunchBusyItems(launches, kernel,
+    static_cast<std::size_t>(
+      std::min(steps, launches.GetContext().GetNumberOfUnits() * itemsOfUnit)));
 }
 
 ElementBytes GetBackground(const VolumeArray& array)
@@ -52,35 +53,31 @@ ElementBytes GetBackground(const VolumeArray& array)
   return {};
 }
 
-void LaunchBusyItems(OpenCLContext& context, const cl::CommandQueue& queue,
-  const cl::Kernel& kernel, std::size_t items, std::vector<cl::Event>& events)
+void LaunchBusyItems(Launches& launches, const cl::Kernel& kernel, std::size_t items)
 {
-  const std::size_t group = context.GetDevice().HasVectors ? 1 : 64;
-  events.push_back(context.Launch(
-    queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group)));
+  const std::size_t group = launches.GetContext().GetDevice().HasVectors ? 1 : 64;
+  launches.Launch(kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group));
 }
 
-void LaunchSmallItems(OpenCLContext& context, const cl::CommandQueue& queue,
-  const cl::Kernel& kernel, std::uint64_t items, std::vector<cl::Event>& events)
+void LaunchSmallItems(Launches& launches, const cl::Kernel& kernel, std::uint64_t items)
 {
   constexpr std::uint64_t group = 64;
   const auto launched = static_cast<std::size_t>((items + group - 1) / group * group);
-  events.push_back(
-    context.Launch(queue, kernel, cl::NDRange(launched), cl::NDRange(std::size_t{ group })));
+  launches.Launch(kernel, cl::NDRange(launched), cl::NDRange(std::size_t{ group }));
 }
 
-void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
-  const ElementBytes& value, std::uint64_t size, std::vector<cl::Event>& events)
+void Fill(
+  Launches& launches, const cl::Buffer& buffer, const ElementBytes& value, std::uint64_t size)
 {
   const unsigned char first = value.Bytes.front();
   if (value.Size > 1 &&
     std::all_of(value.Bytes.begin(), value.Bytes.begin() + static_cast<std::ptrdiff_t>(value.Size),
       [&](unsigned char byte) { return byte == first; }))
   {
-    Fill(context, queue, buffer, ElementBytes::Of(first), size * value.Size, events);
+    Fill(launches, buffer, ElementBytes::Of(first), size * value.Size);
     return;
   }
-  if (!context.GetDevice().IsProcessor)
+  if (!launches.GetContext().GetDevice().IsProcessor)
   {
     cl_uint4 pattern;
     auto* const bytes = reinterpret_cast<unsigned char*>(&pattern);
@@ -88,37 +85,35 @@ void Fill(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffe
     {
       bytes[i] = value.Bytes[i % value.Size];
     }
-    LaunchSteps(context, queue,
-      MakeKernel(
-        GetOutputProgram(context), "FillWide", buffer, cl_ulong{ size * value.Size }, pattern),
-      size * value.Size, sizeof(pattern), events);
+    LaunchSteps(launches,
+      MakeKernel(GetOutputProgram(launches.GetContext()), "FillWide", buffer,
+        cl_ulong{ size * value.Size }, pattern),
+      size * value.Size, sizeof(pattern));
     return;
   }
-  cl::Kernel kernel = MakeKernel(context, "Fill", value);
+  cl::Kernel kernel = MakeKernel(launches, "Fill", value);
   SetArguments(kernel, 0, buffer, cl_ulong{ size });
   const std::uint64_t step = DEFORMVOLUME_FILLED_BYTES / value.Size;
-  LaunchBusyItems(
-    context, queue, kernel, static_cast<std::size_t>((size + step - 1) / step), events);
+  LaunchBusyItems(launches, kernel, static_cast<std::size_t>((size + step - 1) / step));
 }
 
-void FillPatches(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
-  const ElementBytes& value, std::size_t elements, const cl::Buffer& patches, std::size_t count,
-  const KernelParameters& parameters, std::vector<cl::Event>& events)
+void FillPatches(Launches& launches, const cl::Buffer& buffer, const ElementBytes& value,
+  std::size_t elements, const cl::Buffer& patches, std::size_t count,
+  const KernelParameters& parameters)
 {
-  cl::Kernel kernel = MakeKernel(context, "FillPatches", value);
+  cl::Kernel kernel = MakeKernel(launches, "FillPatches", value);
   SetArguments(kernel, 0, buffer, static_cast<cl_uint>(elements));
   SetArguments(kernel, 3, patches, parameters);
-  LaunchPatches(context, queue, kernel, count, events);
+  LaunchPatches(launches, kernel, count);
 }
 
-void FillUncovered(OpenCLContext& context, const cl::CommandQueue& queue, const cl::Buffer& buffer,
-  const ElementBytes& value, std::uint64_t voxels, std::size_t elements, const cl::Buffer& bits,
-  std::vector<cl::Event>& events)
+void FillUncovered(Launches& launches, const cl::Buffer& buffer, const ElementBytes& value,
+  std::uint64_t voxels, std::size_t elements, const cl::Buffer& bits)
 {
-  cl::Kernel kernel = MakeKernel(context, "FillUncovered", value);
+  cl::Kernel kernel = MakeKernel(launches, "FillUncovered", value);
   SetArguments(kernel, 0, buffer, cl_ulong{ voxels });
   SetArguments(kernel, 3, bits, static_cast<cl_uint>(elements));
-  LaunchSteps(context, queue, kernel, voxels, 1, events);
+  LaunchSteps(launches, kernel, voxels, 1);
 }
 
 } // namespace deformvolume

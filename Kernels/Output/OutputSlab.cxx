@@ -2,11 +2,11 @@
 #include "OutputSlab.h"
 
 #include "KernelMaking.h"
+#include "Launches.h"
 #include "OutputFilling.h"
 #include "OutputPatches.h"
 #include "ResamplingProgram.h"
 #include "SlabSizes.h"
-#include "WorkDevice.h"
 
 #include <algorithm>
 #include <limits>
@@ -33,25 +33,24 @@ Extent GetWholeOutput(const DeformRequest& request)
 
 } // namespace
 
-void OutputSlab::PrepareUpdate(OpenCLContext& context, const cl::CommandQueue& queue,
-  const DeformRequest& request, const std::vector<VolumeArray>& arrays, const PartToUpdate& part,
-  std::vector<cl::Event>& events)
+void OutputSlab::PrepareUpdate(Launches& launches, const DeformRequest& request,
+  const std::vector<VolumeArray>& arrays, const PartToUpdate& part)
 {
   this->Finish();
-  this->Queue = queue;
+  this->Queue = launches.GetQueue();
   this->WholeExtent = GetWholeOutput(request);
-  const bool onHost = GetOutputBytesPerVoxel(context, arrays, request) == 0;
+  const bool onHost = GetOutputBytesPerVoxel(launches.GetContext(), arrays, request) == 0;
   if (onHost)
   {
     // Clear patches on the host, before buffers use the memory.
     ClearPatches(request, arrays, part.Patches);
   }
-  OutputMemory::Bind(context, request, arrays, this->GetExtent());
+  OutputMemory::Bind(launches.GetContext(), request, arrays, this->GetExtent());
   const bool withWinners = part.WithWinners && !part.Bricks.empty();
   this->NumberOfListedPatches = 0;
   if (!onHost || withWinners || this->BitsUsed)
   {
-    this->SendPatches(context, part.Patches);
+    this->SendPatches(launches, part.Patches);
   }
   KernelParameters p = {};
   this->SetParameters(p);
@@ -59,161 +58,158 @@ void OutputSlab::PrepareUpdate(OpenCLContext& context, const cl::CommandQueue& q
   {
     for (const Element& element : this->GetElements())
     {
-      FillPatches(context, queue, element.Buffer, element.Background, element.GetComponents(),
-        this->PatchList, part.Patches.size(), p, events);
+      FillPatches(launches, element.Buffer, element.Background, element.GetComponents(),
+        this->PatchList, part.Patches.size(), p);
     }
   }
   if (this->BitsUsed && !part.Patches.empty())
   {
-    LaunchPatches(context, queue,
-      MakeKernel(
-        GetOutputProgram(context), "ClearPatchBits", this->CoverageBits, this->PatchList, p),
-      part.Patches.size(), events);
+    LaunchPatches(launches,
+      MakeKernel(GetOutputProgram(launches.GetContext()), "ClearPatchBits", this->CoverageBits,
+        this->PatchList, p),
+      part.Patches.size());
   }
   if (withWinners)
   {
-    this->Winners.PrepareUpdate(context, part.Patches, this->PatchList, p, events);
+    this->Winners.PrepareUpdate(launches, part.Patches, this->PatchList, p);
   }
   if (!part.Bricks.empty())
   {
-    this->Counters.ClearSections(
-      context, part.Bricks.size(), part.BrickList, part.WithWinners, events);
+    this->Counters.ClearSections(launches, part.Bricks.size(), part.BrickList, part.WithWinners);
   }
 }
 
-void OutputSlab::SendPatches(OpenCLContext& context, const std::vector<std::uint32_t>& patches)
+void OutputSlab::SendPatches(Launches& launches, const std::vector<std::uint32_t>& patches)
 {
   if (!patches.empty())
   {
     const std::uint64_t bytes = patches.size() * sizeof(cl_uint);
-    Reserve(context, this->PatchList, bytes);
+    Reserve(launches.GetContext(), this->PatchList, bytes);
     this->Queue.enqueueWriteBuffer(this->PatchList, CL_TRUE, 0, bytes, patches.data());
     this->NumberOfListedPatches = patches.size();
   }
 }
 
-void OutputSlab::Bind(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
-  const DeformRequest& request, const std::vector<VolumeArray>& arrays, const VoxelGrid& voxelGrid,
-  std::size_t numberOfBricks, std::vector<cl::Event>& events)
+void OutputSlab::Bind(Launches& launches, const Extent& extent, const DeformRequest& request,
+  const std::vector<VolumeArray>& arrays, const VoxelGrid& voxelGrid, std::size_t numberOfBricks)
 {
   this->FinishReading();
   this->Finish();
-  this->Queue = queue;
+  this->Queue = launches.GetQueue();
   this->WholeExtent = GetWholeOutput(request);
-  this->Winners.Start(queue, extent, voxelGrid);
-  OutputMemory::Bind(context, request, arrays, extent);
-  this->Counters.Start(context, queue, numberOfBricks, events);
-  this->LargeCells.Start(context, queue, GetNumberOfCells(voxelGrid.VertexExtent));
+  this->Winners.Start(extent, voxelGrid);
+  OutputMemory::Bind(launches.GetContext(), request, arrays, extent);
+  this->Counters.Start(launches, numberOfBricks);
+  this->LargeCells.Start(
+    launches.GetContext(), launches.GetQueue(), GetNumberOfCells(voxelGrid.VertexExtent));
 }
 
-void OutputSlab::Clear(OpenCLContext& context, bool coverageBits, std::vector<cl::Event>& events)
+void OutputSlab::Clear(Launches& launches, bool coverageBits)
 {
   this->BitsUsed = coverageBits;
   if (coverageBits)
   {
     const std::uint64_t words = CountWords(this->GetNumberOfVoxels());
-    Reserve(context, this->CoverageBits, words * sizeof(cl_uint));
-    Fill(context, this->Queue, this->CoverageBits, ElementBytes::Of(cl_uint{ 0 }), words, events);
+    Reserve(launches.GetContext(), this->CoverageBits, words * sizeof(cl_uint));
+    Fill(launches, this->CoverageBits, ElementBytes::Of(cl_uint{ 0 }), words);
     return;
   }
   this->CoverageBits = cl::Buffer();
   for (const Element& element : this->GetElements())
   {
-    Fill(context, this->Queue, element.Buffer, element.Background,
-      this->GetNumberOfVoxels() * element.GetComponents(), events);
+    Fill(launches, element.Buffer, element.Background,
+      this->GetNumberOfVoxels() * element.GetComponents());
   }
 }
 
-void OutputSlab::ExpandCoverage(
-  OpenCLContext& context, bool isUpdate, std::vector<cl::Event>& events)
+void OutputSlab::ExpandCoverage(Launches& launches, bool isUpdate)
 {
   if (!isUpdate)
   {
-    LaunchSteps(context, this->Queue,
-      MakeKernel(GetOutputProgram(context), "ExpandCoverage", this->CoverageBits,
+    LaunchSteps(launches,
+      MakeKernel(GetOutputProgram(launches.GetContext()), "ExpandCoverage", this->CoverageBits,
         this->GetCoverage(), cl_ulong{ this->GetNumberOfVoxels() }),
-      this->GetNumberOfVoxels(), DEFORMVOLUME_EXPANDED, events);
+      this->GetNumberOfVoxels(), DEFORMVOLUME_EXPANDED);
   }
   else if (this->NumberOfListedPatches > 0)
   {
     KernelParameters p = {};
     this->SetParameters(p);
-    LaunchPatches(context, this->Queue,
-      MakeKernel(GetOutputProgram(context), "ExpandPatches", this->CoverageBits,
+    LaunchPatches(launches,
+      MakeKernel(GetOutputProgram(launches.GetContext()), "ExpandPatches", this->CoverageBits,
         this->GetCoverage(), this->PatchList, p),
-      this->NumberOfListedPatches, events);
+      this->NumberOfListedPatches);
   }
 }
 
-void OutputSlab::Complete(OpenCLContext& context, bool isUpdate, std::vector<cl::Event>& events)
+void OutputSlab::Complete(Launches& launches, bool isUpdate)
 {
   if (!this->BitsUsed)
   {
     return;
   }
-  this->ExpandCoverage(context, isUpdate, events);
+  this->ExpandCoverage(launches, isUpdate);
   const std::vector<Element>& elements = this->GetElements();
   for (std::size_t i = 0; i + 1 < elements.size() && !isUpdate; ++i)
   {
-    FillUncovered(context, this->Queue, elements[i].Buffer, elements[i].Background,
-      this->GetNumberOfVoxels(), elements[i].GetComponents(), this->CoverageBits, events);
+    FillUncovered(launches, elements[i].Buffer, elements[i].Background, this->GetNumberOfVoxels(),
+      elements[i].GetComponents(), this->CoverageBits);
   }
   this->Queue.finish(); // the output is read in another queue
 }
 
-void OutputSlab::Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
-  std::vector<cl::Event>& events)
+void OutputSlab::Settle(Launches& launches, bool claimed, const KernelParameters& parameters)
 {
   KernelParameters p = parameters;
   this->SetParameters(p);
   if (this->BitsUsed && !claimed)
   {
-    this->ExpandCoverage(context, false, events);
+    this->ExpandCoverage(launches, false);
   }
-  this->Winners.Settle(
-    context, claimed, this->GetCoverage(), this->Counters.GetBuffer(), p, events);
+  this->Winners.Settle(launches, claimed, this->GetCoverage(), this->Counters.GetBuffer(), p);
 }
 
-std::uint64_t OutputSlab::CountCovered(WorkDevice& device, std::vector<cl::Event>& events)
+std::uint64_t OutputSlab::CountCovered(Launches& launches)
 {
   if (this->BitsUsed)
   {
-    return this->ReadCounts(device, true, events).Covered;
+    return this->ReadCounts(launches, true).Covered;
   }
-  OpenCLContext& context = device.GetContext();
+  OpenCLContext& context = launches.GetContext();
   // Many if a work-item has a thread of its own, fewer if the device executes thousands at once.
   const cl_uint voxelsOfItem = context.GetDevice().HasVectors ? 4096 : 128;
   const std::uint64_t items = (this->GetNumberOfVoxels() + voxelsOfItem - 1) / voxelsOfItem;
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
   const cl::Kernel kernel = MakeKernel(GetOutputProgram(context), "CountCovered",
     this->GetCoverage(), cl_ulong{ this->GetNumberOfVoxels() }, voxelsOfItem, sums);
-  LaunchBusyItems(context, this->Queue, kernel, static_cast<std::size_t>(items), events);
+  LaunchBusyItems(launches, kernel, static_cast<std::size_t>(items));
   return ReadSum(this->Queue, sums, static_cast<std::size_t>(items));
 }
 
 std::uint64_t OutputSlab::CountCovered(
-  OpenCLContext& context, const std::vector<std::uint32_t>& patches, std::vector<cl::Event>& events)
+  Launches& launches, const std::vector<std::uint32_t>& patches)
 {
   if (patches.empty())
   {
     return 0;
   }
-  this->SendPatches(context, patches);
-  const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, patches.size() * sizeof(cl_uint));
+  this->SendPatches(launches, patches);
+  const cl::Buffer sums(
+    launches.GetContext().GetContext(), CL_MEM_WRITE_ONLY, patches.size() * sizeof(cl_uint));
   KernelParameters p = {};
   this->SetParameters(p);
-  LaunchBusyItems(context, this->Queue,
-    MakeKernel(GetOutputProgram(context), "CountCoveredInPatches", this->GetCoverage(),
-      this->PatchList, static_cast<cl_uint>(patches.size()), sums, p),
-    patches.size(), events);
+  LaunchBusyItems(launches,
+    MakeKernel(GetOutputProgram(launches.GetContext()), "CountCoveredInPatches",
+      this->GetCoverage(), this->PatchList, static_cast<cl_uint>(patches.size()), sums, p),
+    patches.size());
   return ReadSum(this->Queue, sums, patches.size());
 }
 
-SlabCounts OutputSlab::ReadCounts(WorkDevice& device, bool covered, std::vector<cl::Event>& events)
+SlabCounts OutputSlab::ReadCounts(Launches& launches, bool covered)
 {
   const bool withBits = covered && this->BitsUsed;
-  return this->Counters.Read(device, withBits ? this->CoverageBits : cl::Buffer(),
-    withBits ? CountWords(this->GetNumberOfVoxels()) : 0, events);
+  return this->Counters.Read(launches, withBits ? this->CoverageBits : cl::Buffer(),
+    withBits ? CountWords(this->GetNumberOfVoxels()) : 0);
 }
 
 bool OutputSlab::FitsLanes() const

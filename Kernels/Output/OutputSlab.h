@@ -18,23 +18,22 @@
 namespace deformvolume
 {
 
-class WorkDevice;
+class Launches;
 
 /// A slab of the output of exact resampling: besides its arrays and their coverage, the winners of
 /// overlaps and the counters of the bricks of cells.
 class OutputSlab : public OutputMemory
 {
 public:
-  /// Prepares the memory for a slab (OutputMemory::Bind()). Adds events of launches to a list.
-  void Bind(OpenCLContext& context, const cl::CommandQueue& queue, const Extent& extent,
-    const DeformRequest& request, const std::vector<VolumeArray>& arrays,
-    const VoxelGrid& voxelGrid, std::size_t numberOfBricks, std::vector<cl::Event>& events);
+  /// Prepares the memory for a slab (OutputMemory::Bind()).
+  void Bind(Launches& launches, const Extent& extent, const DeformRequest& request,
+    const std::vector<VolumeArray>& arrays, const VoxelGrid& voxelGrid, std::size_t numberOfBricks);
   /// Sets the coverage to 0, and fills the arrays with the background. If coverage is stored as
   /// bits, Complete() fills the arrays instead. Call this after Bind().
-  void Clear(OpenCLContext& context, bool coverageBits, std::vector<cl::Event>& events);
+  void Clear(Launches& launches, bool coverageBits);
   /// If coverage is stored as bits: expands the bits to bytes, and fills voxels that are not
   /// covered with the background. isUpdate: only patches that PrepareUpdate() cleared have changed.
-  void Complete(OpenCLContext& context, bool isUpdate, std::vector<cl::Event>& events);
+  void Complete(Launches& launches, bool isUpdate);
 
   /// The parts of an output that an incremental update computes (see IncrementalUpdate).
   struct PartToUpdate
@@ -47,23 +46,20 @@ public:
   /// Replaces Bind() and Clear() for an incremental update. The last output and its counters must
   /// be available. Clears the patches, the counters of the bricks, and the counters by which the
   /// passes for winners find their work. Other patches keep their winners.
-  void PrepareUpdate(OpenCLContext& context, const cl::CommandQueue& queue,
-    const DeformRequest& request, const std::vector<VolumeArray>& arrays, const PartToUpdate& part,
-    std::vector<cl::Event>& events);
+  void PrepareUpdate(Launches& launches, const DeformRequest& request,
+    const std::vector<VolumeArray>& arrays, const PartToUpdate& part);
 
   OutputWinners& GetWinners() { return this->Winners; }
   const OutputWinners& GetWinners() const { return this->Winners; }
   /// See OutputWinners. parameters: of the mesh.
-  void Settle(OpenCLContext& context, bool claimed, const KernelParameters& parameters,
-    std::vector<cl::Event>& events);
+  void Settle(Launches& launches, bool claimed, const KernelParameters& parameters);
 
-  std::uint64_t CountCovered(WorkDevice& device, std::vector<cl::Event>& events);
+  std::uint64_t CountCovered(Launches& launches);
   /// Counts the covered voxels of some patches, after Complete.
-  std::uint64_t CountCovered(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
-    std::vector<cl::Event>& events);
+  std::uint64_t CountCovered(Launches& launches, const std::vector<std::uint32_t>& patches);
   /// Reads the sums of the counters. covered: whether to find SlabCounts::Covered, which requires
   /// that coverage is bits.
-  SlabCounts ReadCounts(WorkDevice& device, bool covered, std::vector<cl::Event>& events);
+  SlabCounts ReadCounts(Launches& launches, bool covered);
 
   /// Whether the slab fits the CPU kernel, which uses float positions and 31-bit indices.
   bool FitsLanes() const;
@@ -88,8 +84,8 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
-  void SendPatches(OpenCLContext& context, const std::vector<std::uint32_t>& patches);
-  void ExpandCoverage(OpenCLContext& context, bool isUpdate, std::vector<cl::Event>& events);
+  void SendPatches(Launches& launches, const std::vector<std::uint32_t>& patches);
+  void ExpandCoverage(Launches& launches, bool isUpdate);
 
   cl::CommandQueue Queue;
   Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } }; // of the output

@@ -3,6 +3,7 @@
 
 #include "HostMemory.h"
 #include "KernelMaking.h"
+#include "Launches.h"
 #include "OutputFilling.h"
 #include "ResamplingProgram.h"
 
@@ -18,10 +19,8 @@ std::size_t GetWinnerSize(const VoxelGrid& voxelGrid)
   return GetNumberOfCells(voxelGrid.VertexExtent) <= mostCells ? 4 : 8;
 }
 
-void OutputWinners::Start(
-  const cl::CommandQueue& queue, const Extent& output, const VoxelGrid& voxelGrid)
+void OutputWinners::Start(const Extent& output, const VoxelGrid& voxelGrid)
 {
-  this->Queue = queue;
   this->Output = output;
   this->KeySize = GetWinnerSize(voxelGrid);
   this->KeyBytes = static_cast<std::uint64_t>(GetNumberOfPoints(output)) * this->KeySize;
@@ -57,29 +56,28 @@ std::uint64_t OutputWinners::GetMissingMemory() const
   return this->HasBuffers() ? 0 : this->KeyBytes + 2 * this->CountPatches();
 }
 
-void OutputWinners::Prepare(OpenCLContext& context, std::vector<cl::Event>& events)
+void OutputWinners::Prepare(Launches& launches)
 {
   const std::uint64_t patchBytes = 2 * this->CountPatches();
   if (!this->HasBuffers())
   {
-    Reserve(context, this->Keys, this->KeyBytes);
-    Reserve(context, this->Patches, patchBytes);
+    Reserve(launches.GetContext(), this->Keys, this->KeyBytes);
+    Reserve(launches.GetContext(), this->Patches, patchBytes);
   }
-  Fill(
-    context, this->Queue, this->Keys, ElementBytes::Of(cl_uchar{ 0xff }), this->KeyBytes, events);
-  Fill(context, this->Queue, this->Patches, ElementBytes::Of(cl_uchar{ 0 }), patchBytes, events);
+  Fill(launches, this->Keys, ElementBytes::Of(cl_uchar{ 0xff }), this->KeyBytes);
+  Fill(launches, this->Patches, ElementBytes::Of(cl_uchar{ 0 }), patchBytes);
 }
 
-void OutputWinners::PrepareUpdate(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
-  const cl::Buffer& list, const KernelParameters& parameters, std::vector<cl::Event>& events)
+void OutputWinners::PrepareUpdate(Launches& launches, const std::vector<std::uint32_t>& patches,
+  const cl::Buffer& list, const KernelParameters& parameters)
 {
   if (!patches.empty())
   {
-    FillPatches(context, this->Queue, this->Keys,
-      ElementBytes::Of(std::numeric_limits<cl_uint>::max()), this->KeySize / sizeof(cl_uint), list,
-      patches.size(), parameters, events);
+    FillPatches(launches, this->Keys, ElementBytes::Of(std::numeric_limits<cl_uint>::max()),
+      this->KeySize / sizeof(cl_uint), list, patches.size(), parameters);
   }
-  const MappedBuffer<unsigned char> known(this->Queue, this->Patches, CL_MAP_READ | CL_MAP_WRITE);
+  const MappedBuffer<unsigned char> known(
+    launches.GetQueue(), this->Patches, CL_MAP_READ | CL_MAP_WRITE);
   this->IsUpdate = true;
   const std::uint64_t all = this->CountPatches();
   std::fill_n(known.Get(), all, static_cast<unsigned char>(DEFORMVOLUME_PATCH_KEPT));
@@ -89,16 +87,16 @@ void OutputWinners::PrepareUpdate(OpenCLContext& context, const std::vector<std:
   }
 }
 
-void OutputWinners::PrepareCounts(OpenCLContext& context, std::vector<cl::Event>& events)
+void OutputWinners::PrepareCounts(Launches& launches)
 {
-  Fill(context, this->Queue, this->Keys, ElementBytes::Of(cl_uchar{ 0 }), this->KeyBytes, events);
+  Fill(launches, this->Keys, ElementBytes::Of(cl_uchar{ 0 }), this->KeyBytes);
 }
 
-std::vector<std::uint32_t> OutputWinners::ReadCounts() const
+std::vector<std::uint32_t> OutputWinners::ReadCounts(Launches& launches) const
 {
   const std::size_t words = this->KeySize / sizeof(cl_uint);
   std::vector<std::uint32_t> counts(static_cast<std::size_t>(this->KeyBytes / sizeof(cl_uint)));
-  this->Queue.enqueueReadBuffer(this->Keys, CL_TRUE, 0, this->KeyBytes, counts.data());
+  launches.GetQueue().enqueueReadBuffer(this->Keys, CL_TRUE, 0, this->KeyBytes, counts.data());
   for (std::size_t i = 0; words > 1 && i < counts.size() / words; ++i)
   {
     counts[i] = counts[words * i];
@@ -107,35 +105,34 @@ std::vector<std::uint32_t> OutputWinners::ReadCounts() const
   return counts;
 }
 
-bool OutputWinners::HasContested() const
+bool OutputWinners::HasContested(Launches& launches) const
 {
   const std::uint64_t all = this->CountPatches();
   std::vector<unsigned char> contested(static_cast<std::size_t>(all));
-  this->Queue.enqueueReadBuffer(this->Patches, CL_TRUE, all, all, contested.data());
+  launches.GetQueue().enqueueReadBuffer(this->Patches, CL_TRUE, all, all, contested.data());
   return std::find(contested.begin(), contested.end(), 1) != contested.end();
 }
 
-void OutputWinners::Settle(OpenCLContext& context, bool claimed, const cl::Buffer& coverage,
-  const cl::Buffer& counters, const KernelParameters& parameters, std::vector<cl::Event>& events)
+void OutputWinners::Settle(Launches& launches, bool claimed, const cl::Buffer& coverage,
+  const cl::Buffer& counters, const KernelParameters& parameters)
 {
   if (!claimed)
   {
     // Without the pass in which cells claim voxels, it is not known which patches are touched.
     // Assume that all patches are touched.
-    Fill(context, this->Queue, this->Patches,
-      ElementBytes::Of(static_cast<cl_uchar>(DEFORMVOLUME_PATCH_TOUCHED)), this->CountPatches(),
-      events);
+    Fill(launches, this->Patches,
+      ElementBytes::Of(static_cast<cl_uchar>(DEFORMVOLUME_PATCH_TOUCHED)), this->CountPatches());
   }
   // If a work-item has a thread of its own, it processes many neighboring patches.
-  const cl_uint patchesOfItem = context.GetDevice().HasVectors ? 32 : 1;
-  const cl::Kernel kernel = MakeKernel(GetOutputProgram(context), "Settle", coverage, this->Keys,
-    static_cast<cl_uint>(this->KeySize / sizeof(cl_uint)), cl_int{ claimed }, this->Patches,
-    counters, patchesOfItem, parameters);
+  const cl_uint patchesOfItem = launches.GetContext().GetDevice().HasVectors ? 32 : 1;
+  const cl::Kernel kernel = MakeKernel(GetOutputProgram(launches.GetContext()), "Settle", coverage,
+    this->Keys, static_cast<cl_uint>(this->KeySize / sizeof(cl_uint)), cl_int{ claimed },
+    this->Patches, counters, patchesOfItem, parameters);
   const std::uint64_t patchesOfRow =
     static_cast<std::uint64_t>(DEFORMVOLUME_PATCHES(GetSize(this->Output, 0)));
   const std::uint64_t items =
     (patchesOfRow + patchesOfItem - 1) / patchesOfItem * (this->CountPatches() / patchesOfRow);
-  LaunchBusyItems(context, this->Queue, kernel, static_cast<std::size_t>(items), events);
+  LaunchBusyItems(launches, kernel, static_cast<std::size_t>(items));
 }
 
 std::uint64_t OutputWinners::GetMemory() const

@@ -14,6 +14,8 @@
 namespace deformvolume
 {
 
+class Launches;
+
 /// Returns the bytes of a winner's key. Four bytes hold a cell number up to 2^30 and two flag bits,
 /// for inverted tetrahedra and for contested voxels.
 std::size_t GetWinnerSize(const VoxelGrid& voxelGrid);
@@ -24,30 +26,30 @@ class OutputWinners
 {
 public:
   /// Starts an output of this extent. Releases buffers that do not fit it.
-  void Start(const cl::CommandQueue& queue, const Extent& output, const VoxelGrid& voxelGrid);
+  void Start(const Extent& output, const VoxelGrid& voxelGrid);
 
   /// Returns the bytes that Prepare will allocate.
   std::uint64_t GetMissingMemory() const;
   /// Allocates the buffers if needed, and resets all winners.
-  void Prepare(OpenCLContext& context, std::vector<cl::Event>& events);
+  void Prepare(Launches& launches);
   /// Resets the winners of some patches. Other patches keep the winners of the last output. list:
   /// the patch numbers on the device. parameters: with the extent of the output.
-  void PrepareUpdate(OpenCLContext& context, const std::vector<std::uint32_t>& patches,
-    const cl::Buffer& list, const KernelParameters& parameters, std::vector<cl::Event>& events);
+  void PrepareUpdate(Launches& launches, const std::vector<std::uint32_t>& patches,
+    const cl::Buffer& list, const KernelParameters& parameters);
   /// Finds the unsettled voxels: voxels whose winner must still be chosen, and voxels that no cell
   /// has written but some cell may win. Call this after the pass in which cells claim voxels, or
   /// without that pass if no voxel is contested. claimed: whether that pass was launched. coverage,
   /// counters: of the output.
-  void Settle(OpenCLContext& context, bool claimed, const cl::Buffer& coverage,
-    const cl::Buffer& counters, const KernelParameters& parameters, std::vector<cl::Event>& events);
+  void Settle(Launches& launches, bool claimed, const cl::Buffer& coverage,
+    const cl::Buffer& counters, const KernelParameters& parameters);
   /// Whether Settle() has found voxels that several tetrahedra write: in this update, or earlier in
   /// patches that are kept.
-  bool HasContested() const;
+  bool HasContested(Launches& launches) const;
 
   ///@{
   /// Use the memory of the winners for one count per voxel, after winners are no longer needed.
-  void PrepareCounts(OpenCLContext& context, std::vector<cl::Event>& events);
-  std::vector<std::uint32_t> ReadCounts() const;
+  void PrepareCounts(Launches& launches);
+  std::vector<std::uint32_t> ReadCounts(Launches& launches) const;
   ///@}
 
   /// Whether some patches of the output keep their values.
@@ -62,7 +64,6 @@ private:
   bool HasBuffers() const;
   std::uint64_t CountPatches() const;
 
-  cl::CommandQueue Queue;
   Extent Output{ { 0, -1, 0, -1, 0, -1 } };
   std::uint64_t KeyBytes = 0; // bytes for all voxels
   std::size_t KeySize = 4;

@@ -5,9 +5,9 @@
 #include "HostMemory.h"
 #include "KernelMaking.h"
 #include "KernelParameters.h"
+#include "Launches.h"
 #include "OutputFilling.h"
 #include "ResamplingProgram.h"
-#include "WorkDevice.h"
 
 #include <array>
 
@@ -26,31 +26,29 @@ cl_uint GetSectionBits(std::size_t section)
 
 } // namespace
 
-void SectionCounters::Start(OpenCLContext& context, const cl::CommandQueue& queue,
-  std::size_t numberOfBricks, std::vector<cl::Event>& events)
+void SectionCounters::Start(Launches& launches, std::size_t numberOfBricks)
 {
-  this->Queue = queue;
   this->NumberOfSections = DEFORMVOLUME_SECTIONS * numberOfBricks;
-  Reserve(
-    context, this->Counters, this->NumberOfSections * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
-  this->Clear(context, events);
+  Reserve(launches.GetContext(), this->Counters,
+    this->NumberOfSections * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
+  this->Clear(launches);
 }
 
-void SectionCounters::Clear(OpenCLContext& context, std::vector<cl::Event>& events)
+void SectionCounters::Clear(Launches& launches)
 {
-  Fill(context, this->Queue, this->Counters, ElementBytes::Of(cl_uint{ 0 }),
-    this->NumberOfSections * DEFORMVOLUME_COUNTERS, events);
+  Fill(launches, this->Counters, ElementBytes::Of(cl_uint{ 0 }),
+    this->NumberOfSections * DEFORMVOLUME_COUNTERS);
 }
 
-void SectionCounters::ClearSections(OpenCLContext& context, std::size_t bricks,
-  const cl::Buffer& brickList, bool withWinners, std::vector<cl::Event>& events)
+void SectionCounters::ClearSections(
+  Launches& launches, std::size_t bricks, const cl::Buffer& brickList, bool withWinners)
 {
   const auto launch = [&](const char* name, std::size_t sections, const auto&... arguments)
   {
-    LaunchSmallItems(context, this->Queue,
-      MakeKernel(GetOutputProgram(context), name, this->Counters, arguments...,
+    LaunchSmallItems(launches,
+      MakeKernel(GetOutputProgram(launches.GetContext()), name, this->Counters, arguments...,
         static_cast<cl_uint>(sections)),
-      sections, events);
+      sections);
   };
   launch("ClearSections", DEFORMVOLUME_SECTIONS * bricks, brickList);
   if (withWinners)
@@ -59,28 +57,27 @@ void SectionCounters::ClearSections(OpenCLContext& context, std::size_t bricks,
   }
 }
 
-SlabCounts SectionCounters::Read(WorkDevice& device, const cl::Buffer& coverageBits,
-  std::uint64_t coverageWords, std::vector<cl::Event>& events)
+SlabCounts SectionCounters::Read(
+  Launches& launches, const cl::Buffer& coverageBits, std::uint64_t coverageWords)
 {
-  OpenCLContext& context = device.GetContext();
+  OpenCLContext& context = launches.GetContext();
   std::array<cl_uint, DEFORMVOLUME_SUMMARY_WORDS> words;
   Reserve(context, this->Parts, DEFORMVOLUME_PARTS * DEFORMVOLUME_SUMMED * sizeof(cl_ulong));
   Reserve(context, this->Summary, sizeof(words));
   const auto launch = [&](const char* name, std::size_t groups, const auto&... arguments)
   {
     cl::Kernel kernel(GetOutputProgram(context), name);
-    const std::size_t group = device.GetBusyGroupSize(kernel, 256);
+    const std::size_t group = launches.GetDevice().GetBusyGroupSize(kernel, 256);
     SetArguments(
       kernel, 0, arguments..., cl::Local(DEFORMVOLUME_SUMMED * group * sizeof(cl_ulong)));
-    events.push_back(
-      context.Launch(this->Queue, kernel, cl::NDRange(group * groups), cl::NDRange(group)));
+    launches.Launch(kernel, cl::NDRange(group * groups), cl::NDRange(group));
   };
   // Some drivers do not accept a null buffer, so pass another one.
   launch("SumParts", DEFORMVOLUME_PARTS, this->Counters,
     static_cast<cl_uint>(this->NumberOfSections), coverageBits() ? coverageBits : this->Counters,
     cl_ulong{ coverageWords }, this->Parts);
   launch("Summarize", 1, this->Parts, this->Summary);
-  this->Queue.enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());
+  launches.GetQueue().enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());
   const auto join = [&](std::size_t word)
   { return words[word] | std::uint64_t{ words[word + 1] } << 32; };
   SlabCounts counts;
@@ -93,10 +90,10 @@ SlabCounts SectionCounters::Read(WorkDevice& device, const cl::Buffer& coverageB
   return counts;
 }
 
-std::vector<cl_uint> SectionCounters::FindBricks(int counter) const
+std::vector<cl_uint> SectionCounters::FindBricks(Launches& launches, int counter) const
 {
   std::vector<cl_uint> counters(this->NumberOfSections * DEFORMVOLUME_COUNTERS);
-  this->Queue.enqueueReadBuffer(
+  launches.GetQueue().enqueueReadBuffer(
     this->Counters, CL_TRUE, 0, counters.size() * sizeof(cl_uint), counters.data());
   std::vector<cl_uint> bricks;
   for (std::size_t brick = 0; brick < this->NumberOfSections / DEFORMVOLUME_SECTIONS; ++brick)

@@ -162,7 +162,7 @@ void BoundaryCells::MoveCorners()
   const cl_uint i =
     this->Source.SetPointArguments(kernel, SetArguments(kernel, 0, this->Corners), this->Pieces);
   SetArguments(kernel, i, this->Positions, this->Displacements, count);
-  this->Launched.GetMappingEvents().push_back(this->Device.Launch(kernel, count));
+  this->Launched.AddMapping(this->Device.Launch(kernel, count));
 }
 
 std::vector<cl_uint> BoundaryCells::ListTiles(

@@ -321,9 +321,7 @@ void ExactPasses::Launch(
   if (IsByColumns(form))
   {
     const std::size_t group = this->Deferred.GetGroup(kernel);
-    this->Launched.GetResamplingEvents().push_back(
-      this->Device.GetContext().Launch(this->Device.GetQueue(), kernel,
-        cl::NDRange(this->Deferred.GetItems(group)), cl::NDRange(group)));
+    this->Launched.Launch(kernel, cl::NDRange(this->Deferred.GetItems(group)), cl::NDRange(group));
     return;
   }
   const std::size_t group = this->Device.GetBusyGroupSize(kernel);

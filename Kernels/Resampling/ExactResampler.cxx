@@ -4,15 +4,13 @@
 #include "DeviceVolume.h"
 #include "DisplacementSource.h"
 #include "MemoryBudget.h"
-#include "WorkDevice.h"
 
 namespace deformvolume
 {
 
 ExactResampler::ExactResampler(
   WorkDevice& device, MemoryBudget& budget, DeviceVolume& volume, DisplacementSource& source)
-  : Device(device)
-  , Budget(budget)
+  : Budget(budget)
   , Volume(volume)
   , Source(source)
   , Launched(device)
@@ -39,12 +37,9 @@ void ExactResampler::Make(
   OutputSlab& target = this->Targets[plan.GetTarget(slab)];
   this->Launched.Expect((plan.Slabs.size() - slab) *
     (this->Exact.GetNumberOfLaunches() + this->Boundary.GetNumberOfLaunches()));
-  target.Bind(this->Device.GetContext(), this->Device.GetQueue(), plan.Slabs[slab], request,
-    this->Volume.GetArrays().Get(), this->Volume.GetVoxelGrid(),
-    this->Volume.GetBricks().GetNumberOfBricks(), this->Launched.GetResamplingEvents());
-  target.Clear(this->Device.GetContext(),
-    this->Exact.ChooseForm(request, target) == ResamplingForm::Columns,
-    this->Launched.GetResamplingEvents());
+  target.Bind(this->Launched, plan.Slabs[slab], request, this->Volume.GetArrays().Get(),
+    this->Volume.GetVoxelGrid(), this->Volume.GetBricks().GetNumberOfBricks());
+  target.Clear(this->Launched, this->Exact.ChooseForm(request, target) == ResamplingForm::Columns);
   this->MakeExact(request, target, slab == 0, report);
 }
 
@@ -64,12 +59,11 @@ ExactResampler::Outcome ExactResampler::RunFirstPass(
   Outcome outcome;
   const auto count = [&]
   {
-    outcome.Counts = output.ReadCounts(this->Device, true, this->Launched.GetResamplingEvents());
-    outcome.Covered = output.HasCoverageBits()
-      ? outcome.Counts.Covered
-      : output.CountCovered(this->Device, this->Launched.GetResamplingEvents());
+    outcome.Counts = output.ReadCounts(this->Launched, true);
+    outcome.Covered =
+      output.HasCoverageBits() ? outcome.Counts.Covered : output.CountCovered(this->Launched);
   };
-  this->Source.PrepareMapping(this->Launched.GetMappingEvents());
+  this->Launched.AddMapping(this->Source.PrepareMapping());
   this->RunPass(request, output, pass, false);
   count();
   outcome.HasLargeCells = outcome.Counts.HasLarge;
@@ -97,7 +91,7 @@ void ExactResampler::MakeExact(
     this->WasContested && this->Budget.HasRoomFor(output.GetWinners().GetMissingMemory());
   if (expected)
   {
-    output.GetWinners().Prepare(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+    output.GetWinners().Prepare(this->Launched);
   }
   const Outcome first = this->RunFirstPass(
     request, output, expected ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT);
@@ -119,14 +113,14 @@ void ExactResampler::MakeExact(
       this->Last =
         claimed && first.Counts.Overstretched == 0 ? LastOutput::Won : LastOutput::Unknown;
     }
-    covered = output.CountCovered(this->Device, this->Launched.GetResamplingEvents());
+    covered = output.CountCovered(this->Launched);
   }
   this->Boundary.Run(request, output);
   if (request.FoldCounts && first.Counts.Writes > first.Covered)
   {
     this->CountFolds(request, output);
   }
-  output.Complete(this->Device.GetContext(), false, this->Launched.GetResamplingEvents());
+  output.Complete(this->Launched, false);
   report.NumberOfCoveredVoxels +=
     static_cast<std::int64_t>(covered + this->Boundary.GetNumberOfCovered());
   if (isFirst)
@@ -146,17 +140,16 @@ bool ExactResampler::ChooseWinners(
   {
     this->Budget.CheckRoomFor(output.GetWinners().GetMissingMemory(),
       "on the device for a deformation that folds the volume over");
-    output.GetWinners().Prepare(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+    output.GetWinners().Prepare(this->Launched);
     if (contested)
     {
-      output.GetCounters().Clear(this->Device.GetContext(), this->Launched.GetResamplingEvents());
+      output.GetCounters().Clear(this->Launched);
       this->RunPass(request, output, DEFORMVOLUME_PASS_OWNERS, first.HasLargeCells);
       claimed = true;
     }
   }
-  output.Settle(this->Device.GetContext(), claimed,
-    this->Volume.GetParameters(this->Volume.GetChunks().front()),
-    this->Launched.GetResamplingEvents());
+  output.Settle(
+    this->Launched, claimed, this->Volume.GetParameters(this->Volume.GetChunks().front()));
   this->WriteWinners(request, output, first.HasLargeCells, claimed);
   return claimed;
 }
@@ -170,7 +163,7 @@ void ExactResampler::WriteWinners(
     std::vector<cl_uint> bricks;
     if (!all)
     {
-      bricks = output.GetCounters().FindBricks(counter);
+      bricks = output.GetCounters().FindBricks(this->Launched, counter);
     }
     this->RunPass(request, output, pass, hasLargeCells, all ? nullptr : &bricks);
   };
@@ -180,10 +173,9 @@ void ExactResampler::WriteWinners(
 
 void ExactResampler::CountFolds(const DeformRequest& request, OutputSlab& output)
 {
-  output.GetWinners().PrepareCounts(
-    this->Device.GetContext(), this->Launched.GetResamplingEvents());
+  output.GetWinners().PrepareCounts(this->Launched);
   this->RunPass(request, output, DEFORMVOLUME_PASS_COUNT, true);
-  const std::vector<std::uint32_t> counts = output.GetWinners().ReadCounts();
+  const std::vector<std::uint32_t> counts = output.GetWinners().ReadCounts(this->Launched);
   const Extent& slab = output.GetExtent();
   const Extent& all = request.OutputExtent;
   const auto width = static_cast<std::size_t>(GetSize(slab, 0));
@@ -202,8 +194,7 @@ void ExactResampler::CountFolds(const DeformRequest& request, OutputSlab& output
 
 std::uint64_t ExactResampler::CountCovered(const std::vector<std::uint32_t>& patches)
 {
-  return this->Targets[0].CountCovered(
-    this->Device.GetContext(), patches, this->Launched.GetResamplingEvents());
+  return this->Targets[0].CountCovered(this->Launched, patches);
 }
 
 void ExactResampler::Finish() noexcept
@@ -217,7 +208,7 @@ void ExactResampler::Finish() noexcept
 bool ExactResampler::HoldsLastOutput(const DeformRequest& request)
 {
   return this->CanUpdateOutput() &&
-    this->Targets[0].HoldsLastOutput(this->Device.GetContext(), request);
+    this->Targets[0].HoldsLastOutput(this->Launched.GetContext(), request);
 }
 
 std::optional<ExactResampler::UpdatedOutput> ExactResampler::UpdateOutput(
@@ -228,18 +219,17 @@ std::optional<ExactResampler::UpdatedOutput> ExactResampler::UpdateOutput(
   const bool won = this->HasWinners();
   const int pass = won ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT;
   const cl::Buffer list = bricks.empty() ? cl::Buffer() : this->Exact.SendBricks(bricks);
-  output.PrepareUpdate(this->Device.GetContext(), this->Device.GetQueue(), request,
-    this->Volume.GetArrays().Get(), { bricks, list, patches, won },
-    this->Launched.GetResamplingEvents());
-  this->Source.PrepareMapping(this->Launched.GetMappingEvents(), &bricks);
+  output.PrepareUpdate(
+    this->Launched, request, this->Volume.GetArrays().Get(), { bricks, list, patches, won });
+  this->Launched.AddMapping(this->Source.PrepareMapping(&bricks));
   this->RunPass(request, output, pass, false, &bricks);
   UpdatedOutput updated;
-  updated.Counts = output.ReadCounts(this->Device, false, this->Launched.GetResamplingEvents());
+  updated.Counts = output.ReadCounts(this->Launched, false);
   const bool hasLargeCells = updated.Counts.HasLarge;
   if (hasLargeCells)
   {
     this->Exact.RunLargeCells(request, output, pass);
-    updated.Counts = output.ReadCounts(this->Device, false, this->Launched.GetResamplingEvents());
+    updated.Counts = output.ReadCounts(this->Launched, false);
   }
   const auto complete = [&]
   {
@@ -247,8 +237,8 @@ std::optional<ExactResampler::UpdatedOutput> ExactResampler::UpdateOutput(
     {
       this->Boundary.Run(request, output, &patches);
     }
-    output.Complete(this->Device.GetContext(), true, this->Launched.GetResamplingEvents());
-    this->Device.GetQueue().finish(); // the output is read in another queue
+    output.Complete(this->Launched, true);
+    this->Launched.GetQueue().finish(); // the output is read in another queue
   };
   if (!won)
   {
@@ -257,11 +247,10 @@ std::optional<ExactResampler::UpdatedOutput> ExactResampler::UpdateOutput(
   }
   if (!bricks.empty())
   {
-    output.Settle(this->Device.GetContext(), true,
-      this->Volume.GetParameters(this->Volume.GetChunks().front()),
-      this->Launched.GetResamplingEvents());
+    output.Settle(
+      this->Launched, true, this->Volume.GetParameters(this->Volume.GetChunks().front()));
   }
-  updated.Overlapping = output.GetWinners().HasContested();
+  updated.Overlapping = output.GetWinners().HasContested(this->Launched);
   if (updated.Counts.Overstretched > 0 ||
     !(updated.Overlapping || updated.Counts.Inverted > 0 || updated.Counts.MissingWhereAssumed))
   {

@@ -99,7 +99,6 @@ private:
   void MakeExact(
     const DeformRequest& request, OutputSlab& output, bool isFirst, DeformReport& report);
 
-  WorkDevice& Device;
   MemoryBudget& Budget;
   DeviceVolume& Volume;
   DisplacementSource& Source;

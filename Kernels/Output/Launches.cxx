@@ -2,7 +2,6 @@
 #include "Launches.h"
 
 #include "Error.h"
-#include "WorkDevice.h"
 
 #include <algorithm>
 
@@ -26,8 +25,8 @@ double GetSeconds(const std::vector<cl::Event>& events)
 
 void Launches::Start()
 {
-  this->MappingEvents.clear();
-  this->ResamplingEvents.clear();
+  this->Mapping.clear();
+  this->Resampling.clear();
   this->Last = cl::Event();
   this->Done = 0;
   this->Expected = 1;
@@ -39,17 +38,30 @@ void Launches::ExpectAtLeast(std::size_t launches)
   this->Expected = std::max(this->Expected, this->Done + launches);
 }
 
+void Launches::Launch(const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group)
+{
+  this->Resampling.push_back(this->GetContext().Launch(this->GetQueue(), kernel, items, group));
+}
+
+void Launches::AddMapping(const cl::Event& launch)
+{
+  if (launch())
+  {
+    this->Mapping.push_back(launch);
+  }
+}
+
 void Launches::Run(const DeformRequest& request, const cl::Kernel& kernel, const cl::NDRange& items,
   const cl::NDRange& group)
 {
-  const cl::CommandQueue& queue = this->Device.GetQueue();
-  this->ResamplingEvents.push_back(this->Device.GetContext().Launch(queue, kernel, items, group));
+  const cl::CommandQueue& queue = this->GetQueue();
+  this->Launch(kernel, items, group);
   queue.flush();
   if (this->Last())
   {
     this->Last.wait();
   }
-  this->Last = this->ResamplingEvents.back();
+  this->Last = this->Resampling.back();
   ++this->Done;
   // The expected number may grow later.
   constexpr double most = 0.99;
@@ -64,8 +76,8 @@ void Launches::Run(const DeformRequest& request, const cl::Kernel& kernel, const
 
 void Launches::AddTimes(DeformReport& report)
 {
-  report.MappingTime += GetSeconds(this->MappingEvents);
-  report.ResamplingTime += GetSeconds(this->ResamplingEvents);
+  report.MappingTime += GetSeconds(this->Mapping);
+  report.ResamplingTime += GetSeconds(this->Resampling);
   this->Start();
 }
 

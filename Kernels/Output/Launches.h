@@ -3,7 +3,7 @@
 #define DeformVolumeLaunches_h
 
 #include "DeformRequest.h"
-#include "OpenCLContext.h"
+#include "WorkDevice.h"
 
 #include <cstddef>
 #include <vector>
@@ -11,9 +11,7 @@
 namespace deformvolume
 {
 
-class WorkDevice;
-
-/// The launches of a deformation: their times and the progress by their number.
+/// The launches of kernels of a deformation: their times, and the progress by their number.
 class Launches
 {
 public:
@@ -25,8 +23,14 @@ public:
   /// Resets times and progress for a new deformation.
   void Start();
 
-  /// Enqueues a resampling kernel, waits for the previous launch, so that the device always has
-  /// work, and reports progress. Throws Aborted if the progress callback returns false.
+  WorkDevice& GetDevice() { return this->Device; }
+  OpenCLContext& GetContext() { return this->Device.GetContext(); }
+  const cl::CommandQueue& GetQueue() { return this->Device.GetQueue(); }
+
+  /// Enqueues a kernel.
+  void Launch(const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group);
+  /// Enqueues a kernel, waits for the previous call of Run(), so that the device always has work,
+  /// and reports progress. Throws Aborted if the progress callback returns false.
   void Run(const DeformRequest& request, const cl::Kernel& kernel, const cl::NDRange& items,
     const cl::NDRange& group);
 
@@ -37,19 +41,17 @@ public:
   void ExpectAtLeast(std::size_t launches);
   ///@}
 
-  /// The events of launches that map vertices, and of launches that resample. Other classes add the
-  /// events of their launches.
-  std::vector<cl::Event>& GetMappingEvents() { return this->MappingEvents; }
-  std::vector<cl::Event>& GetResamplingEvents() { return this->ResamplingEvents; }
+  /// Adds a launch that maps vertices, unless null. All other launches count as resampling.
+  void AddMapping(const cl::Event& launch);
 
   /// Adds the times of all launches, which must be finished, and resets them.
   void AddTimes(DeformReport& report);
 
 private:
   WorkDevice& Device;
-  std::vector<cl::Event> MappingEvents;
-  std::vector<cl::Event> ResamplingEvents;
-  cl::Event Last;
+  std::vector<cl::Event> Mapping;
+  std::vector<cl::Event> Resampling;
+  cl::Event Last; // of Run()
   std::size_t Done = 0;
   std::size_t Expected = 1; // estimated total, including Done
   double Reported = 0.0;    // the last progress
