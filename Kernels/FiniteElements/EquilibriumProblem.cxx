@@ -33,7 +33,6 @@ EquilibriumLimits ChooseLimits(const EquilibriumRequest& request)
   choose(limits.LinearIterations, 500, 5000);
   choose(limits.LinearTolerance, 3e-3, 1e-6);
   choose(limits.RelativeTolerance, 1e-3, 1e-6);
-  choose(limits.AbsoluteTolerance, 1e-6, 1e-11);
   return limits;
 }
 

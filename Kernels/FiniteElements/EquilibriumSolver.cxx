@@ -76,14 +76,25 @@ void EquilibriumSolver::UpdateScale(Watch& watch)
   }
   // A node has about six tetrahedra of its own: h is the side of a cube of their mean volume.
   constexpr double tetrahedraOfCell = 6.0;
-  const double size =
-    std::cbrt(tetrahedraOfCell * total / static_cast<double>(this->Volumes.size()));
-  double modulus = this->Body.Materials.front().YoungModulus;
+  this->MeanEdge = std::cbrt(tetrahedraOfCell * total / static_cast<double>(this->Volumes.size()));
+  this->LeastModulus = this->Body.Materials.front().YoungModulus;
   for (const ElasticMaterial& material : this->Body.Materials)
   {
-    modulus = std::min(modulus, material.YoungModulus);
+    this->LeastModulus = std::min(this->LeastModulus, material.YoungModulus);
   }
-  this->ForceScale = modulus * size * size;
+}
+
+double EquilibriumSolver::FindRounding(const std::vector<glm::dvec3>& displacements) const
+{
+  // The rounding errors of deformation gradients grow with the displacements. Poisson's ratios near
+  // 0.5 multiply those of the forces by some hundreds.
+  constexpr double rounding = 1e-13;
+  double farthest = 0.0;
+  for (const glm::dvec3& displacement : displacements)
+  {
+    farthest = std::max(farthest, LargestComponent(displacement));
+  }
+  return rounding * this->LeastModulus * this->MeanEdge * (this->MeanEdge + farthest);
 }
 
 void EquilibriumSolver::SetMaterials(const std::vector<ElasticMaterial>& materials)
@@ -476,7 +487,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
     report.RelativeResidual =
       residuals.Reference > 0.0 ? residuals.Largest / residuals.Reference : 0.0;
     const double wanted =
-      std::max(tolerance * residuals.Reference, limits.AbsoluteTolerance * this->ForceScale);
+      std::max(tolerance * residuals.Reference, this->FindRounding(state.Displacements));
     report.IsConverged = residuals.Largest <= wanted;
     // Reuse a tangent of another state only while it reduces the residual by at least this factor.
     constexpr double leastGain = 0.2;

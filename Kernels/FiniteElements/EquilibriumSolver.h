@@ -42,6 +42,8 @@ private:
     double Potential = 0.0;
   };
   void UpdateScale(Watch& watch);
+  // Returns an upper limit of the rounding errors of forces, in N.
+  double FindRounding(const std::vector<glm::dvec3>& displacements) const;
   // Discards forces, tangent, preconditioner and solutions of earlier calls. Keeps the
   // displacements.
   void Forget();
@@ -84,9 +86,8 @@ private:
   std::vector<bool> ActivePieces;
   SlidingNodes Sliding;
   GaussVolumes Volumes;
-  // E h^2, in N: E is the least Young modulus, h the mean distance of nodes.
-  // EquilibriumLimits::AbsoluteTolerance is a fraction of this force.
-  double ForceScale = 0.0;
+  double LeastModulus = 0.0; // of all materials, in Pa
+  double MeanEdge = 0.0;     // the mean distance of neighboring nodes, in m
   FiniteElements Elements;
   TangentSolver Tangent;
   // HasTangent: a tangent exists that may be reused. IsTangentOld: it is from an earlier call.

@@ -38,12 +38,9 @@ struct EquilibriumLimits
   double LinearTolerance = 0.0;
   /// The body is in equilibrium if no component of the residual force on a free node exceeds this
   /// fraction of the largest applied force or reaction. 0: 1e-6 in mode Converged; 1e-3 in mode
-  /// Interactive, and 1e-2 if held nodes moved.
+  /// Interactive, and 1e-2 if held nodes moved. The body is also in equilibrium if no component
+  /// exceeds the rounding errors of the forces.
   double RelativeTolerance = 0.0;
-  /// The body is also in equilibrium if no component exceeds this fraction of E h^2. This is the
-  /// force that a stress of the size of the Young modulus exerts on a tetrahedron of mean size. 0:
-  /// 1e-6 in mode Interactive, otherwise 1e-11.
-  double AbsoluteTolerance = 0.0;
 };
 
 /// The input of FiniteElementModel::Solve().

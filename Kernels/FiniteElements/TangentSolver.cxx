@@ -21,6 +21,7 @@ void TangentSolver::Forget()
 {
   this->IsFree.clear();
   this->IsPreconditioned = false;
+  this->DoLevelsFail = false;
   this->History.Clear();
 }
 
@@ -48,7 +49,8 @@ std::vector<glm::dvec3> TangentSolver::FindPositions() const
 Preconditioner& TangentSolver::Precondition(Watch& watch, const std::vector<unsigned char>& isFree)
 {
   const bool isNew = this->IsFree != isFree;
-  this->HasLevels = std::count(isFree.begin(), isFree.end(), 1) >= LeastNumberForLevels;
+  this->HasLevels =
+    !this->DoLevelsFail && std::count(isFree.begin(), isFree.end(), 1) >= LeastNumberForLevels;
   if (this->HasLevels && isNew)
   {
     this->Levels.Build(watch, this->Matrix, isFree, this->FindPositions());
@@ -114,8 +116,20 @@ ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
     this->Residual = rightHandSide;
     begin = squared;
   }
-  const ConjugateGradients::Result result = this->Gradients.Solve(watch, this->Matrix, isFree,
+  ConjugateGradients::Result result = this->Gradients.Solve(watch, this->Matrix, isFree,
     preconditioner, { limits.Iterations, wanted }, solution, this->Residual);
+  if (result.IsPreconditionerIndefinite && this->HasLevels)
+  {
+    // The hierarchy was built from a matrix that is too different, or its single precision is not
+    // enough for stiffnesses that differ by more than about 10^7.
+    this->Jacobi.Build(watch, this->Matrix, isFree);
+    const int iterations = result.Iterations;
+    result = this->Gradients.Solve(watch, this->Matrix, isFree, this->Jacobi,
+      { limits.Iterations - iterations, wanted }, solution, this->Residual);
+    result.Iterations += iterations;
+    this->DoLevelsFail = this->AreLevelsNew && !result.IsIndefinite;
+    this->IsFree.clear();
+  }
   this->Sliding.Project(solution);
   if (result.IsIndefinite)
   {

@@ -85,6 +85,8 @@ private:
   bool AreLevelsNew = false;
   // Whether the preconditioner is the multigrid hierarchy.
   bool HasLevels = false;
+  // Whether the hierarchy of a positive definite matrix was not positive definite.
+  bool DoLevelsFail = false;
   ConjugateGradients Gradients;
   std::vector<glm::dvec3> Residual;
   SolutionHistory History;

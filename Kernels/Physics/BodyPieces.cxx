@@ -21,11 +21,6 @@ namespace deformvolume
 namespace
 {
 
-// Three points count as collinear if the area between them is less than this fraction of the square
-// of an edge. Mid-side nodes are collinear with the ends of their edge only up to the rounding of
-// floats.
-constexpr double LeastArea = ElasticBody::LargestSine;
-
 void FindNodes(const ElasticBody& body, BodyPieces& pieces)
 {
   pieces.PieceOfNode.assign(body.Points.size(), -1);
@@ -153,8 +148,10 @@ public:
       return;
     }
     const glm::dvec3 along = at(this->Nodes[1]) - at(this->Nodes[0]);
-    this->IsStiff =
-      this->IsStiff || glm::length(glm::cross(offset, along)) > LeastArea * glm::dot(along, along);
+    // Points on a line lie on it only up to the rounding of floats.
+    this->IsStiff = this->IsStiff ||
+      glm::length(glm::cross(offset, along)) >
+        ElasticBody::LargestSine * glm::length(offset) * glm::length(along);
   }
 
   bool Holds() const { return this->IsStiff || (this->Slides && this->Planes.Holds()); }

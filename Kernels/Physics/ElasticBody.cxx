@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ElasticBody.h"
 
+#include "CountedLists.h"
 #include "Error.h"
 #include "IndexBounds.h"
 #include "QuadraticTetrahedron.h"
@@ -12,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace deformvolume
 {
@@ -108,6 +111,49 @@ void CheckShapes(Watch& watch, const ElasticBody& body)
     inverted.Throw(body, "are inside out",
       "If only the order of their nodes is wrong, exchange two nodes of each of them; otherwise "
       "make a better mesh.");
+  }
+}
+
+// Two tetrahedra with the same corners would be twice as stiff as one.
+void CheckDuplicates(Watch& watch, const ElasticBody& body)
+{
+  // The other corners of the tetrahedra with the same lowest corner.
+  using Entry = std::array<std::int32_t, 3>;
+  std::vector<std::size_t> begins;
+  std::vector<std::pair<Entry, std::size_t>> entries;
+  Grow(watch, entries, body.Tetrahedra.size());
+  MakeLists(
+    body.Points.size(),
+    [&](const auto& take)
+    {
+      ForItems(watch, body.Tetrahedra.size(),
+        [&](std::size_t t)
+        {
+          Tetrahedron corners = body.Tetrahedra[t];
+          std::sort(corners.begin(), corners.end());
+          take(static_cast<std::size_t>(corners[0]),
+            std::pair<Entry, std::size_t>{ { { corners[1], corners[2], corners[3] } }, t });
+        });
+    },
+    begins, entries);
+  Counted duplicates;
+  ForItems(watch, body.Points.size(),
+    [&](std::size_t node)
+    {
+      std::sort(entries.begin() + static_cast<std::ptrdiff_t>(begins[node]),
+        entries.begin() + static_cast<std::ptrdiff_t>(begins[node + 1]));
+      for (std::size_t i = begins[node] + 1; i < begins[node + 1]; ++i)
+      {
+        if (entries[i].first == entries[i - 1].first)
+        {
+          duplicates.Add(entries[i].second);
+        }
+      }
+    });
+  if (duplicates.Number > 0)
+  {
+    duplicates.Throw(body, "have the same corners as another one",
+      "Remove them, or mark them as duplicate cells in the cell array \"vtkGhostType\".");
   }
 }
 
@@ -264,6 +310,7 @@ void CheckBody(const ElasticBody& body, Watch* watch)
   CheckPoints(body);
   CheckNodes(asked, body);
   CheckShapes(asked, body);
+  CheckDuplicates(asked, body);
   CheckMidSides(asked, body);
   CheckSliding(body);
   CheckMaterials(body, body.Materials);

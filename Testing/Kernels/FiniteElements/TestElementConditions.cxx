@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 using namespace deformvolume;
 
@@ -99,6 +100,45 @@ TEST(ElementConditions, FixedNodesAreDisplaced)
   request.Loads.FixedDisplacements.clear();
   EXPECT_TRUE(model.Solve(request).IsConverged);
   EXPECT_LT(LargestOf(model.GetDisplacements()), 1e-10);
+}
+
+// Nodes on a line do not hold a body, also if their coordinates were rounded to floats far from the
+// origin. Those of a thin face do, whatever their numbers.
+TEST(ElementConditions, LinesAndThinFaces)
+{
+  const auto holds = [](const ElasticBody& body)
+  {
+    FiniteElementModel model;
+    model.SetBody(body);
+    return GetError([&] { model.Solve({}); }).find("No constraints") == std::string::npos;
+  };
+  QuadraticLattice bar({ 3, 3, 60 }, 1e-3, MakeMaterial(1e4, 0.3),
+    [](const Place& place) { return place[0] + place[1] == 0; });
+  const glm::dmat3 turn = MakeRotation(0.7, { 1.0, 0.5, -0.8 });
+  for (glm::dvec3& point : bar.Body.Points)
+  {
+    point = glm::dvec3(glm::vec3(turn * point + glm::dvec3(0.0, 0.0, -1.2)));
+  }
+  EXPECT_FALSE(holds(bar.Body));
+
+  LatticeBody sheet({ 61, 2, 3 }, 1.0, MakeMaterial(1e4, 0.3));
+  sheet.Fix([](const Place& place) { return place[2] == 0; });
+  for (glm::dvec3& point : sheet.Body.Points)
+  {
+    point *= glm::dvec3(5e-3, 2.5e-4, 2.5e-4);
+  }
+  // The ends of an edge that is 1200 times as long as the face is thick have the lowest numbers.
+  const std::int32_t end = sheet.GetNode({ 60, 0, 0 });
+  std::swap(sheet.Body.Points[1], sheet.Body.Points[static_cast<std::size_t>(end)]);
+  for (Tetrahedron& tetrahedron : sheet.Body.Tetrahedra)
+  {
+    for (std::int32_t& node : tetrahedron)
+    {
+      node = node == 1 ? end : node == end ? 1 : node;
+    }
+  }
+  AddMidSideNodes(sheet.Body);
+  EXPECT_TRUE(holds(sheet.Body));
 }
 
 // Three planes hold a body without fixed nodes; two planes do not.

@@ -384,6 +384,32 @@ TEST(FiniteElementBeams, Cantilever)
   }
 }
 
+// A slender rod of bone, bent by a small force, as a sequence of frames: beam theory to 1 %.
+TEST(FiniteElementBeams, StiffRod)
+{
+  constexpr std::int32_t cells = 50;
+  constexpr double width = 4e-3;
+  const QuadraticLattice rod({ 2, 2, cells + 1 }, width, MakeMaterial(18.6e9, 0.3),
+    [](const Place& place) { return place[2] == 0; });
+  EquilibriumRequest request;
+  constexpr double force = 0.05;
+  request.Loads.Forces = LoadFaces(
+    rod.Body, [](const glm::dvec3& point) { return IsAt(point.z, cells * width); },
+    glm::dvec3(force / (width * width), 0.0, 0.0));
+  FiniteElementModel model;
+  model.SetBody(rod.Body);
+  EquilibriumReport report;
+  for (int frame = 0; frame < 10 && !report.IsConverged; ++frame)
+  {
+    report = model.Solve(request);
+  }
+  EXPECT_TRUE(report.IsConverged);
+  EXPECT_LE(report.RelativeResidual, 1e-3);
+  const double byTheory = 4.0 * force * std::pow(cells * width, 3) / (18.6e9 * std::pow(width, 4));
+  EXPECT_NEAR(
+    GetLoadedMean(request.Loads.Forces, model.GetDisplacements()).x / byTheory, 1.0, 0.01);
+}
+
 // A cube between bonded plates that are pulled apart slightly: force / (E A strain).
 TEST(FiniteElementBeams, BondedCube)
 {
