@@ -812,8 +812,8 @@ extern "C"
     /** The number of handles whose displacement was reduced so that pinned voxels and earlier
      * handles do not move. */
     int32_t number_of_reduced_handles;
-    /** The number of handles that were released, as no displacement of their voxels was possible.
-     */
+    /** The number of handles that were released, as no displacement of their voxels was possible,
+     * or as they hold no voxel that can move. */
     int32_t number_of_released_handles;
     /** Not 0: all displacements were set to 0 since the last step. */
     int32_t was_reset;

@@ -425,6 +425,10 @@ ChainMailReport ChainMailSolver::Advance(
   ++this->NumberOfSteps;
   this->HasMoved = false;
   this->Resolve(handles, report);
+  for (ChainMailHandleReport& handle : report.Handles)
+  {
+    handle.IsHeld = handle.IsHeld && handle.NumberOfVoxels > 0;
+  }
   if (this->HasMoved)
   {
     this->Touch(this->Saved);

@@ -70,7 +70,8 @@ struct ChainMailHandleReport
   /// The reduction of the displacement so that pinned voxels and earlier handles do not move:
   /// requested minus applied displacement, in voxels.
   std::array<double, 3> Reduction{ { 0, 0, 0 } };
-  /// False if these voxels cannot be displaced together. They are not held then.
+  /// False if there are no such voxels, or if they cannot be displaced together. They are not held
+  /// then.
   bool IsHeld = true;
 };
 

@@ -208,6 +208,7 @@ std::vector<ChainMailHandleReport> ChainMailReference::Step(
       isTaken[voxel] = 1;
     }
     reports[h].NumberOfVoxels = static_cast<std::int64_t>(held.size());
+    reports[h].IsHeld = !held.empty();
     auto next = this->Displacements;
     std::array<std::int64_t, 3> targets{};
     bool isPossible = true;
