@@ -57,6 +57,7 @@ void vtkArrayChanges::SetArray(vtkAbstractArray* array)
   if (array)
   {
     array->GetInformation()->Set(vtkArrayChanges::LOG(), this);
+    array->Modified(); // values may have been written since the array was read
   }
   this->Begin = this->End = array ? array->GetMTime() : 0;
   this->Modified();

@@ -3,6 +3,7 @@
 
 #include "ChainMailSession.h"
 #include "InputUpdate.h"
+#include "NewWarnings.h"
 #include "PieceRequest.h"
 #include "PipelineExecution.h"
 #include "ProgressReport.h"
@@ -20,9 +21,31 @@
 
 #include <algorithm>
 #include <exception>
+#include <set>
 #include <sstream>
+#include <string>
+#include <vector>
 
 vtkStandardNewMacro(vtkChainMailDeformation);
+
+namespace
+{
+
+// Describes handles that hold no voxel; "" if there are none.
+std::string FindIdleHandles(const std::vector<deformvolume::ChainMailHandleReport>& handles)
+{
+  const auto isIdle = [](const deformvolume::ChainMailHandleReport& handle)
+  { return handle.NumberOfVoxels == 0; };
+  const auto first = std::find_if(handles.begin(), handles.end(), isIdle);
+  return first == handles.end() ? ""
+                                : std::to_string(std::count_if(first, handles.end(), isIdle)) +
+      " handles hold no voxel that can move: their voxels are pinned, have no active tetrahedra, "
+      "or "
+      "belong to handles before them. The first of these handles is point " +
+      std::to_string(first - handles.begin()) + " on input port 1.";
+}
+
+} // namespace
 
 class vtkChainMailDeformation::vtkInternals
 {
@@ -30,6 +53,7 @@ public:
   deformvolume::ChainMailSession Session;
   deformvolume::ChainMailSettings Settings;
   deformvolume::PipelineExecution Execution;
+  std::set<std::string> Warnings; // of the last execution
 };
 
 vtkChainMailDeformation::vtkChainMailDeformation()
@@ -135,6 +159,7 @@ void vtkChainMailDeformation::Reset()
 int vtkChainMailDeformation::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), port == 0 ? "vtkImageData" : "vtkPointSet");
+  deformvolume::AcceptBlocks(info);
   if (port == 1)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
@@ -203,6 +228,7 @@ int vtkChainMailDeformation::RequestData(
     "memory.",
     [&]
     {
+      deformvolume::RefuseBlocks(2, input);
       const deformvolume::ChainMailReport report = this->Internals->Session.Step(
         vtkImageData::GetData(input[0]), deformvolume::GetWrittenStamp(this, 0),
         vtkPointSet::GetData(input[1]), settings, request);
@@ -214,6 +240,12 @@ int vtkChainMailDeformation::RequestData(
       this->NumberOfReducedHandles = report.CountReducedHandles();
       this->NumberOfReleasedHandles = report.CountReleasedHandles();
       this->Internals->Session.GiveOutput(output);
+      const std::string warning = deformvolume::ReplaceWarnings(
+        this->Internals->Warnings, { FindIdleHandles(report.Handles) });
+      if (!warning.empty())
+      {
+        vtkWarningMacro(<< warning);
+      }
     });
 }
 
@@ -235,7 +267,7 @@ std::string vtkChainMailDeformation::GetSummary()
   }
   if (this->NumberOfReleasedHandles > 0)
   {
-    text << "\nHandles released, since others hold their voxels apart: "
+    text << "\nHandles released, which hold no voxel or no possible displacement: "
          << this->NumberOfReleasedHandles;
   }
   return text.str();

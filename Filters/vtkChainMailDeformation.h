@@ -45,9 +45,9 @@
  * @par Reduced and released handles: The displacement of a handle is reduced, on each axis
  * separately, until no pinned voxel and no handle before it in the list would have to move. If
  * there is no such displacement, the handle is released. Both are counted
- * (GetNumberOfReducedHandles(), GetNumberOfReleasedHandles()). If the materials or the active
- * tetrahedra change so that displacements exceed the limits, all displacements are set to 0 before
- * the step.
+ * (GetNumberOfReducedHandles(), GetNumberOfReleasedHandles()). A handle that holds no voxel that
+ * can move counts as released, and a warning says so. If the materials or the active tetrahedra
+ * change so that displacements exceed the limits, all displacements are set to 0 before the step.
  *
  * @par Errors:
  * Each error is reported by one vtkErrorMacro. The output is then empty, and the displacements are

@@ -106,6 +106,7 @@ private:
   vtkIdType NumberOfPoints = 0;
   vtkIdType NumberDone = 0;
   double LongestFading = 0.0; // see PointMap::Image
+  vtkIdType NumberOfOutsidePoints = 0;
 
   std::string IgnoredBlocks; // a warning, or ""
   std::set<std::string> WarnedOf;
@@ -296,7 +297,8 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
   vtkPointData* pointData = output->GetPointData();
   for (const TransformedArray& array : arrays)
   {
-    if (array.Attribute < 0)
+    // An array with a name replaces the last one, and keeps all its roles.
+    if (array.Attribute < 0 || array.Output->GetName())
     {
       pointData->AddArray(array.Output);
     }
@@ -305,7 +307,7 @@ vtkSmartPointer<vtkPointSet> vtkDeformGeometryFilter::vtkInternals::Move(vtkPoin
       pointData->SetAttribute(array.Output, array.Attribute);
     }
   }
-  this->Self->NumberOfOutsidePoints += outside;
+  this->NumberOfOutsidePoints += outside;
   this->LongestFading = std::max(this->LongestFading, -leastFading.load());
   return output;
 }
@@ -338,6 +340,7 @@ void vtkDeformGeometryFilter::vtkInternals::MoveAll(vtkDataObject* input, vtkDat
   this->WarnOfIgnored(inputs);
   this->NumberDone = this->NumberOfPoints = 0;
   this->LongestFading = 0.0;
+  this->NumberOfOutsidePoints = 0;
   for (vtkPointSet* points : inputs)
   {
     this->NumberOfPoints += points->GetNumberOfPoints();
@@ -363,6 +366,7 @@ void vtkDeformGeometryFilter::vtkInternals::MoveAll(vtkDataObject* input, vtkDat
       movedBlocks->SetDataSet(iterator, *next++);
     }
   }
+  this->Self->NumberOfOutsidePoints = this->NumberOfOutsidePoints;
   this->WarnOfOutside();
 }
 

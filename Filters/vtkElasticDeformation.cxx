@@ -156,6 +156,7 @@ int vtkElasticDeformation::FillInputPortInformation(int port, vtkInformation* in
 {
   constexpr const char* types[3] = { "vtkUnstructuredGrid", "vtkPointSet", "vtkPolyData" };
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), types[port]);
+  deformvolume::AcceptBlocks(info);
   if (port > 0)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
@@ -212,6 +213,7 @@ int vtkElasticDeformation::RequestData(
 void vtkElasticDeformation::Execute(
   vtkInformationVector** input, vtkInformationVector* outputVector)
 {
+  deformvolume::RefuseBlocks(3, input);
   vtkUnstructuredGrid* grid = vtkUnstructuredGrid::GetData(input[0]);
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
   vtkInformation* info = outputVector->GetInformationObject(0);

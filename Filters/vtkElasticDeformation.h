@@ -44,9 +44,9 @@
  * @par Port 2, optional, the sheet:
  * vtkPolyData in world coordinates: triangles, polygons and triangle strips; also polylines if
  * SweepVector is set. The sheet cuts the deformed mesh along the nearest faces of its tetrahedra.
- * Nodes on the cut are split: copies of them are appended, so that the two sides can move apart. A
- * cut is made when the sheet changes, and cuts accumulate. vtkDeformVolumeFilter opens the volume
- * at cuts if OpenSplits is on.
+ * Nodes on the cut are split: copies of them are appended, so that the two sides can move apart.
+ * The force of a split node is divided equally among its copies. A cut is made when the sheet
+ * changes, and cuts accumulate. vtkDeformVolumeFilter opens the volume at cuts if OpenSplits is on.
  *
  * @par Output:
  * The mesh at rest, with the point array "Displacement" (float, three components, in the units of

@@ -210,10 +210,12 @@ int vtkVolumeEditAlgorithm::FillInputPortInformation(int port, vtkInformation* i
   {
     case 0:
       info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+      deformvolume::AcceptBlocks(info);
       break;
     case 1:
       info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
       info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+      deformvolume::AcceptBlocks(info);
       break;
     default:
       deformvolume::FillDeformationPort(port == 3, info);
@@ -247,7 +249,7 @@ int vtkVolumeEditAlgorithm::RequestData(
   vtkImageData* volume = vtkImageData::GetData(input[0]);
   vtkImageData* image = vtkImageData::GetData(output);
   image->Initialize();
-  if (IsPartWithoutCells(volume, input[0]->GetInformationObject(0)))
+  if (volume && IsPartWithoutCells(volume, input[0]->GetInformationObject(0)))
   {
     image->ShallowCopy(volume);
     return 1;
@@ -258,6 +260,7 @@ int vtkVolumeEditAlgorithm::RequestData(
     "The memory of this machine does not suffice for the edits. Use a smaller volume.",
     [&]
     {
+      deformvolume::RefuseBlocks(2, input);
       deformvolume::CheckTimes(4, input, output->GetInformationObject(0));
       deformvolume::CheckDisplacementScale(this->DisplacementScale);
       this->UpdateEdits(input);

@@ -9,6 +9,8 @@
 #include "vtkCellType.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkUnsignedCharArray.h"
@@ -55,6 +57,24 @@ void AppendCopies(std::vector<Value>& values, const std::vector<std::int32_t>& o
     {
       values.push_back(values[static_cast<std::size_t>(origin)]);
     }
+  }
+}
+
+// Divides the force of each split node equally among the node and its copies. whole: the number of
+// nodes before all cuts. origins: the nodes that the copies after them were made from.
+void ShareForces(
+  std::vector<glm::dvec3>& forces, std::size_t whole, const std::vector<std::int32_t>& origins)
+{
+  std::vector<std::size_t> roots(forces.size());
+  std::vector<int> shares(whole, 0);
+  for (std::size_t node = 0; node < forces.size(); ++node)
+  {
+    roots[node] = node < whole ? node : roots[static_cast<std::size_t>(origins[node - whole])];
+    ++shares[roots[node]];
+  }
+  for (std::size_t node = 0; node < forces.size(); ++node)
+  {
+    forces[node] /= shares[roots[node]];
   }
 }
 
@@ -160,6 +180,7 @@ BodyMesh ElasticSession::WithCuts(const BodyMesh& whole) const
     AppendCopies(mesh.Body.SlidingNormals, cut.Origins);
     AppendCopies(mesh.Body.SecondSlidingNormals, cut.Origins);
     AppendCopies(mesh.Forces, cut.Origins);
+    ShareForces(mesh.Forces, whole.Body.Points.size(), cut.Origins);
     AppendCopies(mesh.PrescribedDisplacements, cut.Origins);
     AppendCopies(mesh.IsUsed, cut.Origins);
   }
@@ -315,6 +336,7 @@ void ElasticSession::FillMesh(vtkUnstructuredGrid* grid, vtkUnstructuredGrid* ma
   made->Allocate(grid->GetNumberOfCells());
   const int type = this->Mesh.Body.MidSides.empty() ? VTK_TETRA : VTK_QUADRATIC_TETRA;
   std::vector<vtkIdType> nodes;
+  vtkNew<vtkIdList> faces;
   std::size_t tetrahedron = 0;
   for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
   {
@@ -323,6 +345,11 @@ void ElasticSession::FillMesh(vtkUnstructuredGrid* grid, vtkUnstructuredGrid* ma
       nodes.clear();
       this->Mesh.Body.ForNodes(tetrahedron++, [&](std::int32_t node) { nodes.push_back(node); });
       made->InsertNextCell(type, static_cast<vtkIdType>(nodes.size()), nodes.data());
+    }
+    else if (grid->GetCellType(cell) == VTK_POLYHEDRON)
+    {
+      grid->GetFaceStream(cell, faces);
+      made->InsertNextCell(VTK_POLYHEDRON, faces);
     }
     else
     {
@@ -362,9 +389,11 @@ void ElasticSession::FillPointData(vtkUnstructuredGrid* grid, vtkUnstructuredGri
     }
   }
   // For these arrays the values of the body are not the means of the two ends.
+  const auto getArray = [to](const char* name)
+  { return vtkArrayDownCast<vtkDataArray>(to->GetAbstractArray(name)); };
   const auto overwrite = [&](const char* name, const auto& getValue)
   {
-    auto* array = vtkArrayDownCast<vtkDataArray>(to->GetAbstractArray(name));
+    vtkDataArray* array = getArray(name);
     for (vtkIdType node = grid->GetNumberOfPoints(); array && node < array->GetNumberOfTuples();
          ++node)
     {
@@ -377,11 +406,16 @@ void ElasticSession::FillPointData(vtkUnstructuredGrid* grid, vtkUnstructuredGri
   };
   const ElasticBody& body = this->Whole.Body;
   overwrite(FixedName, [&](std::size_t node, int) { return body.IsFixed(node) ? 1.0 : 0.0; });
-  overwrite(ForceName, [](std::size_t, int) { return 0.0; });
   overwrite(
     SlidingNormalName, [&](std::size_t node, int i) { return body.SlidingNormals[node][i]; });
   overwrite(SecondSlidingNormalName,
     [&](std::size_t node, int i) { return body.SecondSlidingNormals[node][i]; });
+  // Cuts divide the forces of nodes, and mid-side nodes have none.
+  vtkDataArray* forces = mesh.Forces.empty() ? nullptr : getArray(ForceName);
+  for (vtkIdType node = 0; forces && node < forces->GetNumberOfTuples(); ++node)
+  {
+    forces->SetTuple(node, &mesh.Forces[static_cast<std::size_t>(node)].x);
+  }
 }
 
 vtkUnstructuredGrid* ElasticSession::GetGrid(vtkUnstructuredGrid* grid)

@@ -3,6 +3,7 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkElasticDeformation.h"
@@ -475,11 +476,32 @@ void CheckTimes(int ports, vtkInformationVector** input, vtkInformation* output)
   }
 }
 
+void AcceptBlocks(vtkInformation* port)
+{
+  port->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+}
+
+void RefuseBlocks(int ports, vtkInformationVector** input)
+{
+  for (int port = 0; port < ports; ++port)
+  {
+    const auto* blocks = vtkCompositeDataSet::GetData(input[port]);
+    if (blocks)
+    {
+      throw Error("The data on input port " + std::to_string(port) + " are a " +
+        blocks->GetClassName() +
+        ", but the filter needs a single dataset. Join the blocks with vtkAppendFilter, with "
+        "vtkAppendPolyData, or in ParaView with Merge Blocks; in a mesh, merge points, too.");
+    }
+  }
+}
+
 void SetTimeStep(
   vtkDataObject* data, vtkInformation* output, std::initializer_list<vtkDataObject*> inputs)
 {
   vtkInformation* info = data->GetInformation();
-  if (output->Has(Pipeline::UPDATE_TIME_STEP()))
+  // Without times, the executive does not update the output for another requested time.
+  if (output->Has(Pipeline::UPDATE_TIME_STEP()) && !GetTimes(output).empty())
   {
     info->Set(vtkDataObject::DATA_TIME_STEP(), output->Get(Pipeline::UPDATE_TIME_STEP()));
     return;

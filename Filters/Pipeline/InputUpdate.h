@@ -62,6 +62,15 @@ bool IsInMemory(vtkAlgorithm* filter, int port);
 /// data object only. Data that a source makes have the time 0: the source marks what it writes.
 std::pair<const void*, vtkMTimeType> GetWrittenStamp(vtkAlgorithm* filter, int port);
 
+///@{
+/// For filters that keep data of the last execution. The executive would split composite data into
+/// blocks, and execute such a filter for each. AcceptBlocks(), for FillInputPortInformation(),
+/// keeps the executive from that. RefuseBlocks() throws an Error if one of the first ports has
+/// composite data.
+void AcceptBlocks(vtkInformation* port);
+void RefuseBlocks(int ports, vtkInformationVector** input);
+///@}
+
 /// The connection of an input, and the last modification time of the pipeline upstream of it.
 std::pair<const void*, vtkMTimeType> GetInputStamp(vtkAlgorithm* filter, int port);
 
@@ -85,8 +94,8 @@ void MergeTimes(vtkAlgorithm* filter, int ports, vtkInformation* output);
 /// the output: the source is also upstream of another input, which needs that time.
 void CheckTimes(int ports, vtkInformationVector** input, vtkInformation* output);
 
-/// Sets the time step of the output data to the requested one, or else to that of the first input
-/// that has one. Inputs may be null.
+/// Sets the time step of the output data to the requested one if the output has times, or else to
+/// that of the first input that has one. Inputs may be null.
 void SetTimeStep(
   vtkDataObject* data, vtkInformation* output, std::initializer_list<vtkDataObject*> inputs);
 

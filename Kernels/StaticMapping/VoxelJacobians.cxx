@@ -94,13 +94,23 @@ public:
     {
       for (int axis = 0; axis < 3; ++axis)
       {
-        derivative[axis] = GetSlope(index[axis] - 0.5, index[axis], index[axis] + 0.5,
-          [&](double shifted)
-          {
-            glm::dvec3 moved = index;
-            moved[axis] = shifted;
-            return this->Displace(this->ToField * moved + this->Offset);
-          });
+        const auto getPosition = [&](double shifted)
+        {
+          glm::dvec3 moved = index;
+          moved[axis] = shifted;
+          return this->ToField * moved + this->Offset;
+        };
+        // A shift must not cross a border of the field that the voxel is within.
+        const auto shift = [&](double distance)
+        {
+          const glm::dvec3 moved = getPosition(index[axis] + distance);
+          const glm::dvec3 after = glm::max(-moved, moved - this->Last);
+          const auto crosses = glm::lessThan(beyond, glm::dvec3(FieldTolerance)) &&
+            glm::greaterThan(after, glm::dvec3(FieldTolerance));
+          return glm::any(crosses) ? index[axis] : index[axis] + distance;
+        };
+        derivative[axis] = GetSlope(shift(-0.5), index[axis], shift(0.5),
+          [&](double shifted) { return this->Displace(getPosition(shifted)); });
         derivative[axis] = IsUndefined(derivative[axis]) ? glm::dvec3(0.0) : derivative[axis];
       }
       return derivative;

@@ -254,6 +254,33 @@ TEST(ChainMailDeformation, PinsAndCuts)
   EXPECT_EQ(GetTuple(found, GetId(volume, 6, 5, 5)), glm::dvec3(0, 0, 0)); // there is no tissue
 }
 
+// Handles that hold no voxel that can move: on a pinned voxel, and on a voxel of another handle.
+TEST(ChainMailDeformation, HandlesWithoutVoxels)
+{
+  const auto volume = MakeVolume({ { 0, 10, 0, 10, 0, 10 } });
+  const auto pinned = MakeArray<vtkUnsignedCharArray>("Pinned", volume->GetNumberOfPoints());
+  pinned->SetValue(GetId(volume, 8, 5, 5), 1);
+  volume->GetPointData()->AddArray(pinned);
+  Dragged dragged(volume);
+  const glm::dvec3 move(1.0, 0.0, 0.0);
+  const glm::dvec3 first(3, 5, 5);
+  const glm::dvec3 same(3.2, 5, 5);
+  const glm::dvec3 onPin(8, 5, 5);
+  dragged.Filter->SetHandlesData(
+    MakeHandles({ { first, first + move }, { same, same - move }, { onPin, onPin + move } }));
+  for (const bool isAgain : { false, true })
+  {
+    dragged.Filter->Modified();
+    dragged.Filter->Update();
+    const std::string warning = dragged.Observer->GetWarningMessage();
+    dragged.Observer->Clear();
+    EXPECT_EQ(HasPart(warning, "2 handles hold no voxel that can move"), !isAgain);
+    EXPECT_EQ(HasPart(warning, "is point 1 on input port 1"), !isAgain);
+    EXPECT_EQ(dragged.Filter->GetNumberOfReleasedHandles(), 2);
+    EXPECT_EQ(GetTuple(dragged.Update(), GetId(volume, 3, 5, 5)), move);
+  }
+}
+
 TEST(ChainMailDeformation, Aborted)
 {
   const auto volume = MakeVolume({ { 0, 40, 0, 40, 0, 40 } });

@@ -2,6 +2,7 @@
 // vtkChainMailDeformation: each misuse is one error, and the next drag works.
 #include "ChainMailTesting.h"
 
+#include <vtkMultiBlockDataSet.h>
 #include <vtkShortArray.h>
 #include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
@@ -159,6 +160,10 @@ TEST(ChainMailMisuse, EmptyAndFlatVolumes)
   EXPECT_FALSE(empty.TryUpdate().empty());
   Dragged flat(MakeVolume({ { 0, 5, 3, 3, 0, 5 } }));
   EXPECT_FALSE(flat.TryUpdate().empty());
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, MakeVolume({ { 0, 5, 0, 5, 0, 5 } }));
+  Dragged composite(blocks);
+  EXPECT_TRUE(HasPart(composite.TryUpdate(), "input port 0 are a vtkMultiBlockDataSet"));
 }
 
 // The cases share one filter, so that each error follows a correction of another one.

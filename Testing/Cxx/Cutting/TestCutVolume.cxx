@@ -5,6 +5,7 @@
 #include "vtkCutVolume.h"
 
 #include <vtkFieldData.h>
+#include <vtkMultiBlockDataSet.h>
 #include <vtkPlaneSource.h>
 #include <vtkPolyData.h>
 #include <vtkTriangleFilter.h>
@@ -46,6 +47,15 @@ TEST(CutVolume, Misuse)
   lines->InsertNextCell(VTK_LINE, 2, ids);
   cut.Filter->SetSheetData(lines);
   cut.Fails("Set SweepVector");
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, MakePlaneX(volume, 2.5));
+  cut.Filter->SetSheetData(blocks);
+  cut.Fails("The data on input port 1 are a vtkMultiBlockDataSet");
+  blocks->SetBlock(0, volume);
+  cut.Filter->SetInputDataObject(blocks);
+  cut.Fails("The data on input port 0 are a vtkMultiBlockDataSet");
+  cut.Filter->SetInputData(volume);
+  cut.Filter->SetSheetData(lines);
   cut.Filter->SetSweepVector(0.0, nan, 0.0);
   cut.Fails("SweepVector is not finite");
   cut.Filter->SetSweepVector(0.0, 0.0, 0.0);

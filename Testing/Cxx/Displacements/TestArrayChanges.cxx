@@ -205,6 +205,26 @@ TEST(ArrayChanges, Filter)
   EXPECT_TRUE(AreEqual(update(), fresh()));
 }
 
+// Values that were written before the log was attached are not in the log.
+TEST(ArrayChanges, LateLog)
+{
+  const auto volume = MakeImage({ { 0, 12, 0, 12, 0, 12 } });
+  AddScalars<short>(volume, "value", [](const glm::dvec3& p) { return p.x; });
+  const auto mesh = MakeMesh(volume, 4, 1.0);
+  SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+  Deformed logged(volume, mesh);
+  logged.Update();
+  vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+  vectors->FillComponent(0, 2.0);
+  mesh->Modified();
+  vtkNew<vtkArrayChanges> log;
+  log->SetArray(vectors);
+  vtkNew<vtkImageData> copy;
+  copy->DeepCopy(logged.Update());
+  Deformed fresh(volume, mesh);
+  EXPECT_TRUE(AreEqual(copy, fresh.Update()));
+}
+
 // A log of the deformed points does not contain the points at rest. They move in an update that
 // fails.
 TEST(ArrayChanges, RestPointsOfAFailedUpdate)

@@ -554,6 +554,38 @@ TEST(DeformGeometryFilter, Arrays)
   EXPECT_EQ(output->GetPointData()->GetArray("v"), vectors); // not active
   EXPECT_EQ(output->GetNumberOfCells(), 1);
   EXPECT_TRUE(HasPart(subject.Warning, "\"cell normals\""));
+
+  // An array that is both the active vectors and the active scalars keeps its place and both roles.
+  vtkPointData* pointData = points->GetPointData();
+  pointData->SetActiveScalars("v");
+  pointData->SetActiveVectors("v");
+  AddArray(points, "after", Shift(0.0, 0.0, 1.0));
+  points->Modified();
+  output = subject.Update();
+  EXPECT_EQ(output->GetPointData()->GetScalars(), output->GetPointData()->GetVectors());
+  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  {
+    EXPECT_STREQ(output->GetPointData()->GetArrayName(i), pointData->GetArrayName(i));
+  }
+}
+
+// After an error in the second block, the points of the first block are not counted.
+TEST(DeformGeometryFilter, OutsideOfAFailedUpdate)
+{
+  auto mesh = MakeLattice(10.0, 3, 0.0);
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, MakePoints({ glm::dvec3(50.0), glm::dvec3(5.0) }));
+  Observed<vtkDeformGeometryFilter> filter;
+  filter.Filter->SetInputDataObject(blocks);
+  filter.Filter->SetDeformationData(mesh);
+  filter.Filter->Update();
+  EXPECT_EQ(filter.Filter->GetNumberOfOutsidePoints(), 1);
+  blocks->SetBlock(1, MakePoints({ glm::dvec3(std::numeric_limits<double>::quiet_NaN()) }));
+  filter.Filter->Modified();
+  filter.Filter->Update();
+  EXPECT_TRUE(HasPart(filter.Observer->GetErrorMessage(), "is not finite"));
+  EXPECT_EQ(filter.Filter->GetNumberOfOutsidePoints(), 0);
 }
 
 // Outside a translated box the exact result is known in closed form.

@@ -3,6 +3,7 @@
 #include "ElasticTesting.h"
 
 #include <vtkCellArray.h>
+#include <vtkTetra.h>
 
 #include <functional>
 
@@ -254,6 +255,74 @@ void CheckCutsOfCuts()
 }
 
 } // namespace
+
+// The copies of a node share its force.
+template <typename Filter>
+void CheckForces()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
+  AddPointVectors(
+    bar, "Force", [](const glm::dvec3& p) { return glm::dvec3(0.0, 1e-6 * p.z, 0.0); });
+  Simulated<Filter> simulated(bar);
+  simulated.Filter->SetLengthUnitToMillimetre();
+  const auto sum = [&]
+  {
+    EXPECT_EQ(simulated.TryUpdate(), "");
+    vtkDataArray* forces = simulated.Filter->GetOutput()->GetPointData()->GetArray("Force");
+    double total = 0.0;
+    for (vtkIdType node = 0; node < forces->GetNumberOfTuples(); ++node)
+    {
+      total += forces->GetComponent(node, 1);
+    }
+    return total;
+  };
+  const double whole = sum();
+  simulated.Filter->SetSheetData(MakeSheet(5.0, 15.0));
+  EXPECT_NEAR(sum(), whole, 1e-12 * whole);
+  simulated.Filter->SetSheetData(MakeSheet(2.6, 15.0));
+  EXPECT_NEAR(sum(), whole, 1e-12 * whole);
+  EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 2);
+}
+
+TEST(ElasticCuts, Forces)
+{
+  CheckForces<vtkMassSpringDeformation>();
+  CheckForces<vtkFiniteElementDeformation>();
+
+  // A free body has the same motion of its center of mass with and without the cut.
+  const auto fly = [](bool isCut)
+  {
+    vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
+    bar->GetPointData()->RemoveArray("Fixed");
+    AddPointVectors(bar, "Force",
+      [](const glm::dvec3& p) { return glm::dvec3(0.0, p.x == 5.0 ? 1e-4 : 0.0, 0.0); });
+    Simulated<vtkMassSpringDeformation> springs(bar);
+    springs.Filter->SetLengthUnitToMillimetre();
+    springs.Filter->SetDamping(0.0);
+    springs.Filter->SetFrameTime(0.01);
+    springs.Filter->SetSheetData(isCut ? MakeSheet(5.0, -1.0) : nullptr);
+    EXPECT_EQ(springs.TryUpdate(), "");
+    vtkUnstructuredGrid* output = springs.Filter->GetOutput();
+    vtkDataArray* moved = output->GetPointData()->GetArray("Displacement");
+    double sum = 0.0;
+    for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
+    {
+      double points[4][3];
+      for (vtkIdType i = 0; i < 4; ++i)
+      {
+        output->GetPoint(output->GetCell(cell)->GetPointId(i), points[i]);
+      }
+      const double volume =
+        std::abs(vtkTetra::ComputeVolume(points[0], points[1], points[2], points[3]));
+      for (vtkIdType i = 0; i < 4; ++i)
+      {
+        sum += volume * moved->GetComponent(output->GetCell(cell)->GetPointId(i), 1);
+      }
+    }
+    return sum;
+  };
+  EXPECT_NEAR(fly(true) / fly(false), 1.0, 1e-4);
+}
 
 TEST(ElasticCuts, CutsOfCuts)
 {

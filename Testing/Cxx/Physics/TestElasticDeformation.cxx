@@ -7,6 +7,7 @@
 #include <vtkCellArray.h>
 #include <vtkInformation.h>
 #include <vtkIntArray.h>
+#include <vtkMultiBlockDataSet.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
@@ -79,6 +80,22 @@ TYPED_TEST(ElasticModels, Misuse)
                           mesh->InsertNextCell(VTK_TETRA, 4, points);
                         }),
     "flat"));
+  const auto repeatCell = [](vtkUnstructuredGrid* mesh)
+  {
+    vtkNew<vtkIdList> points;
+    mesh->GetCellPoints(17, points);
+    const vtkIdType corners[4] = { points->GetId(1), points->GetId(2), points->GetId(0),
+      points->GetId(3) };
+    mesh->InsertNextCell(VTK_TETRA, 4, corners);
+  };
+  EXPECT_TRUE(HasPart(tryMesh(repeatCell),
+    "1 of 961 tetrahedra of the rest mesh have the same corners as another one"));
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, bar);
+  simulated.Filter->SetInputDataObject(blocks);
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(),
+    "The data on input port 0 are a vtkMultiBlockDataSet, but the filter needs a single dataset."));
+  simulated.Filter->SetInputData(bar);
   EXPECT_TRUE(HasPart(tryMesh([](vtkUnstructuredGrid* mesh)
                         { mesh->GetPointData()->GetArray("Fixed")->SetNumberOfTuples(3); }),
     "\"Fixed\""));
@@ -121,6 +138,9 @@ TYPED_TEST(ElasticModels, Misuse)
 
   vtkSmartPointer<vtkPolyData> handles =
     MakeHandles({ { glm::dvec3(0.005, 0.005, 0.03), glm::dvec3(0.005, 0.005, 0.031) } });
+  blocks->SetBlock(0, handles);
+  simulated.Filter->SetHandlesData(blocks);
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "input port 1 are a vtkMultiBlockDataSet"));
   simulated.Filter->SetHandlesData(handles);
   EXPECT_EQ(simulated.TryUpdate(), "");
   EXPECT_EQ(simulated.Filter->GetNumberOfHeldNodes(), 1);
@@ -136,6 +156,35 @@ TYPED_TEST(ElasticModels, Misuse)
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "Point 0 of the handles"));
   simulated.Filter->SetHandlesData(nullptr);
   EXPECT_EQ(simulated.TryUpdate(), "");
+}
+
+// A hidden polyhedron is ignored, and passed with its faces.
+TEST(ElasticDeformation, HiddenPolyhedron)
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
+  vtkNew<vtkIdList> corners;
+  bar->GetCellPoints(0, corners);
+  vtkNew<vtkIdList> faces;
+  faces->InsertNextId(4);
+  for (vtkIdType left = 0; left < 4; ++left)
+  {
+    faces->InsertNextId(3);
+    for (vtkIdType i = 1; i < 4; ++i)
+    {
+      faces->InsertNextId(corners->GetId((left + i) % 4));
+    }
+  }
+  const vtkIdType cell = bar->InsertNextCell(VTK_POLYHEDRON, faces);
+  const auto ghosts = MakeArray<vtkUnsignedCharArray>(
+    vtkDataSetAttributes::GhostArrayName(), bar->GetNumberOfCells());
+  ghosts->Fill(0.0);
+  ghosts->SetValue(cell, vtkDataSetAttributes::HIDDENCELL);
+  bar->GetCellData()->AddArray(ghosts);
+  Simulated<vtkFiniteElementDeformation> elements(bar);
+  EXPECT_EQ(elements.TryUpdate(), "");
+  vtkUnstructuredGrid* output = elements.Filter->GetOutput();
+  ASSERT_EQ(output->GetCellType(cell), VTK_POLYHEDRON);
+  EXPECT_EQ(output->GetCell(cell)->GetNumberOfFaces(), 4);
 }
 
 TEST(ElasticDeformation, ErrorsOfSubclasses)

@@ -111,6 +111,19 @@ TEST(DeformTime, Series)
   EXPECT_EQ(lattice->Executions, 1);
 }
 
+// Without times of the inputs, the output has no time, whatever time is requested.
+TEST(DeformTime, NoTimes)
+{
+  const auto volume = MakeVolume({ { 0, 5, 0, 5, 0, 5 } });
+  const auto mesh = MakeMesh(volume);
+  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
+  Deformed deformed(volume, mesh);
+  deformed.Filter->UpdateTimeStep(1.0);
+  EXPECT_EQ(deformed.TakeErrors(), 0);
+  EXPECT_FALSE(
+    deformed.Filter->GetOutput()->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()));
+}
+
 // The rest mesh is another time of the source that gives the deformation. Of a source of two inputs
 // VTK requests the time of the last input only.
 TEST(DeformTime, RestFromSameSource)

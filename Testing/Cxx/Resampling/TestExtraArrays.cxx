@@ -318,6 +318,30 @@ TEST(ExtraArrays, Kept)
   }
 }
 
+// Beyond a field in z, at the border of field and volume in x: the Jacobian is that of the map.
+TEST(ExtraArrays, BesideThinFields)
+{
+  const auto volume = MakeImage({ { 0, 11, 0, 11, 0, 11 } });
+  AddScalars<float>(volume, "dose", [](const glm::dvec3&) { return 2.0; });
+  AddScalars<double>(volume, "activity", [](const glm::dvec3& p) { return 5.0 + 0.1 * p.x; });
+  for (const bool isInverse : { false, true })
+  {
+    const int last = isInverse ? 17 : 11;
+    const double factor = isInverse ? 1.0 / 1.5 : 1.5;
+    const auto field = MakeImage({ { 0, last, 0, 11, 5, 5 } });
+    SetDisplacements(
+      field, [&](const glm::dvec3& p) { return glm::dvec3(factor * p.x, p.y, p.z); });
+    Derived subject(volume, field);
+    subject.Filter->SetFieldIsInverse(isInverse);
+    subject.Filter->SetOutsideModeToExtrapolate();
+    subject.Expect("");
+    double range[2];
+    subject.Get("Jacobian")->GetRange(range);
+    EXPECT_NEAR(range[0], 1.5, 1e-5);
+    EXPECT_NEAR(range[1], 1.5, 1e-5);
+  }
+}
+
 // Near undefined points of a field the Jacobian is computed from the defined points only.
 TEST(ExtraArrays, Holes)
 {
