@@ -4,6 +4,8 @@
 
 #include "VolumeReading.h"
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,13 +20,11 @@ struct Arguments
   std::string Screenshot;
   std::string Frames;
   std::vector<std::string> Outputs;
-  int Size[2] = { 1000, 750 };
-  bool WantsHelp = false;
+  std::array<int, 2> Size{ { 1000, 750 } };
 };
 
-/// Throws a UsageError if the command line is not valid.
-Arguments ParseArguments(int argc, char* argv[]);
-
-extern const char* const UsageText;
+/// Parses the command line. Returns an exit code if the program must exit: 0 after --help, 2 after
+/// an error message about the command line.
+std::optional<int> ParseArguments(int argc, char* argv[], Arguments& arguments);
 
 #endif

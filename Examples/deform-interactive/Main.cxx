@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // deform-interactive: drags, cuts and carves a volume interactively, in a window.
 #include "Arguments.h"
-#include "Failure.h"
 #include "Messages.h"
 #include "Picture.h"
 #include "Viewer.h"
@@ -15,19 +14,9 @@
 int main(int argc, char* argv[])
 {
   Arguments arguments;
-  try
+  if (const std::optional<int> code = ParseArguments(argc, argv, arguments))
   {
-    arguments = ParseArguments(argc, argv);
-  }
-  catch (const UsageError& error)
-  {
-    std::cerr << "deform-interactive: " << error.what() << "\n";
-    return 2;
-  }
-  if (arguments.WantsHelp)
-  {
-    std::cout << UsageText;
-    return 0;
+    return *code;
   }
   // Messages prints errors; VTK's logger would print them a second time.
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);

@@ -23,12 +23,13 @@ write_vti(ball, path("ball.vti"))
 
 # Misuse.
 for code, words, arguments in (
-    (2, "there is no option", ["--none"]),
-    (2, "more than one volume", ["a.vti", "b.vti"]),
-    (2, "needs a value", ["--replay"]),
-    (2, "two integers", ["--size", "10"]),
-    (2, "need --replay", ["--screenshot", path("x.png")]),
-    (2, "cannot be used together", ["--record", "a.log", "--replay", "b.log"]),
+    (2, "--none", ["--none"]),
+    (2, "b.vti", ["a.vti", "b.vti"]),
+    (2, "--replay", ["--replay"]),
+    (2, "--size", ["--size", "1000"]),
+    (2, "--size", ["--size", "1000,10"]),
+    (2, "--screenshot requires --replay", ["--screenshot", path("x.png")]),
+    (2, "--record excludes --replay", ["--record", "a.log", "--replay", "b.log"]),
     (1, "no such file", [path("missing.vti"), "--replay", path("missing.log")]),
     (1, "no such file", [path("ball.vti"), "--replay", path("missing.log")]),
     (1, "is not a session file", [path("ball.vti"), "--session", path("ball.vti"), "--replay", "x.log"]),
