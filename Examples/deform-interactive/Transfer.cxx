@@ -145,11 +145,6 @@ std::string Transfer::GetName() const
   return names[static_cast<std::size_t>(this->Chosen)];
 }
 
-double Transfer::GetOpacity(double value) const
-{
-  return this->Most * std::clamp((value - this->Level) / this->Width + 0.5, 0.0, 1.0);
-}
-
 void Transfer::Apply(vtkVolumeProperty* property, const double range[2]) const
 {
   const double low = this->Level - 0.5 * this->Width;

@@ -41,8 +41,6 @@ struct Transfer
   Transfer(Preset preset, const Histogram& histogram);
 
   std::string GetName() const;
-  /// Opacity of a value per millimeter, 0 to 1.
-  double GetOpacity(double value) const;
   void Apply(vtkVolumeProperty* property, const double range[2]) const;
 
   Preset Chosen = AUTOMATIC;

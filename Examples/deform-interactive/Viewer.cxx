@@ -29,27 +29,24 @@ constexpr float BeforeStyle = 10.0F; // priority of observers that get events be
 constexpr const char* ProgramKeys =
   "d volume, isosurface, slices    PageUp PageDown move the slice\n"
   "f opacity and colors: automatic, CT bone, CT soft tissue, MR\n"
-  "arrows: level and width, or drag the plot at the lower right\n"
-  "o open a volume, session .xml or recording .log (or drop one)\n"
-  "s save: volume .vti, mesh .vtu, session .xml, picture .png\n"
-  "j start or stop recording     i numbers and plot\n"
-  ", . radius in which a handle holds tissue";
+  "arrows: level and width of the opacity\n"
+  "s save volume, mesh, session and picture\n"
+  "j start or stop recording    i numbers\n"
+  ", . radius in which a handle holds tissue\n"
+  "Drop a volume, session .xml or recording .log to open it.";
 
-void SetUpText(vtkTextActor* actor, double x, double y, bool isRight)
+void SetUpNumbers(vtkTextActor* actor)
 {
   actor->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  actor->SetPosition(x, y);
+  actor->SetPosition(0.99, 0.99);
   vtkTextProperty* property = actor->GetTextProperty();
   property->SetFontFamilyToCourier();
   property->SetFontSize(14);
   property->SetBold(1);
   property->SetShadow(1);
   property->SetColor(0.8, 0.9, 1.0);
-  if (isRight)
-  {
-    property->SetJustificationToRight();
-    property->SetVerticalJustificationToTop();
-  }
+  property->SetJustificationToRight();
+  property->SetVerticalJustificationToTop();
 }
 }
 
@@ -69,22 +66,11 @@ Viewer::Viewer(const Arguments& arguments, Messages& messages)
   this->Style->SetSession(this->Session);
   this->Style->SetAdditionalHelp(ProgramKeys);
   this->View.AddTo(this->Renderer);
-  this->Plot.AddTo(this->Renderer);
-  this->Plot.SetVisible(false);
-  SetUpText(this->Numbers, 0.99, 0.99, true);
-  SetUpText(this->PromptLine, 0.01, 0.13, false);
-  this->PromptLine->GetTextProperty()->SetColor(1.0, 0.85, 0.4);
+  SetUpNumbers(this->Numbers);
   this->Renderer->AddViewProp(this->Numbers);
-  this->Renderer->AddViewProp(this->PromptLine);
 
   this->Interactor->AddObserver(vtkCommand::KeyPressEvent, this, &Viewer::OnKeyPress, BeforeStyle);
   this->Interactor->AddObserver(vtkCommand::CharEvent, this, &Viewer::OnChar, BeforeStyle);
-  this->Interactor->AddObserver(
-    vtkCommand::LeftButtonPressEvent, this, &Viewer::OnLeftButton, BeforeStyle);
-  this->Interactor->AddObserver(
-    vtkCommand::LeftButtonReleaseEvent, this, &Viewer::OnLeftButton, BeforeStyle);
-  this->Interactor->AddObserver(
-    vtkCommand::MouseMoveEvent, this, &Viewer::OnMouseMove, BeforeStyle);
   this->Interactor->AddObserver(vtkCommand::DropFilesEvent, this, &Viewer::OnDrop);
   this->Interactor->AddObserver(vtkCommand::TimerEvent, this, &Viewer::OnTimer, -BeforeStyle);
   this->Style->AddObserver(vtkCommand::UpdateDataEvent, this, &Viewer::OnOutput);
@@ -106,8 +92,7 @@ void Viewer::Run()
   const std::string path = this->Asked.Volume.empty() ? HeadPath : this->Asked.Volume;
   if (this->Asked.Volume.empty() && !vtksys::SystemTools::FileExists(path))
   {
-    this->Announce(
-      "Drop a volume here, or press o to open one. (Install mricron-data for the MRI of a head.)");
+    this->Announce("Drop a volume here. (Install mricron-data for the MRI of a head.)");
   }
   else
   {
@@ -131,11 +116,7 @@ void Viewer::Run()
     this->Replay(this->Asked.Replay);
     for (const std::string& output : this->Asked.Outputs)
     {
-      const std::string error = this->TrySave(output);
-      if (!error.empty())
-      {
-        throw Failure(error);
-      }
+      this->Save(output);
     }
     if (!this->Asked.Screenshot.empty())
     {
@@ -175,16 +156,12 @@ void Viewer::AimCamera(const double view[3])
   camera->SetViewUp(0.0, 0.0, 1.0);
 }
 
-bool Viewer::OnKeyPress(vtkObject*, unsigned long, void*)
+void Viewer::OnKeyPress(vtkObject*, unsigned long, void*)
 {
-  if (this->Prompt.IsActive())
-  {
-    return true;
-  }
   const char* symbol = this->Interactor->GetKeySym();
   if (!symbol || !this->Values)
   {
-    return false;
+    return;
   }
   const double step = 0.01 * (this->Values->Range[1] - this->Values->Range[0]);
   const std::string key = symbol;
@@ -200,26 +177,18 @@ bool Viewer::OnKeyPress(vtkObject*, unsigned long, void*)
   {
     this->View.MoveSlice(this->Renderer, key == "Prior" ? 0.01 : -0.01);
     this->IsChanged = true;
-    return false;
+    return;
   }
   else
   {
-    return false;
+    return;
   }
   this->ShowTransfer();
-  return false;
 }
 
 bool Viewer::OnChar(vtkObject*, unsigned long, void*)
 {
   const char key = this->Interactor->GetKeyCode();
-  if (this->Prompt.IsActive())
-  {
-    this->Prompt.Type(key);
-    this->ShowTexts();
-    this->IsChanged = true;
-    return true;
-  }
   switch (key)
   {
     case 'd':
@@ -233,12 +202,8 @@ bool Viewer::OnChar(vtkObject*, unsigned long, void*)
     case 'i':
       this->ShowNumbers = !this->ShowNumbers;
       break;
-    case 'o':
-      this->Prompt.Begin("Open", "", [this](const std::string& path) { this->Open(path); });
-      break;
     case 's':
-      this->Prompt.Begin("Save .vti .vtu .xml .png", this->FileName + ".vti",
-        [this](const std::string& path) { this->Save(path); });
+      this->SaveAll();
       break;
     case ',':
     case '.':
@@ -255,32 +220,6 @@ bool Viewer::OnChar(vtkObject*, unsigned long, void*)
   }
   this->ShowTexts();
   this->IsChanged = true;
-  return true;
-}
-
-bool Viewer::OnLeftButton(vtkObject*, unsigned long event, void*)
-{
-  const bool wasEditing = this->IsEditing;
-  const int* position = this->Interactor->GetEventPosition();
-  this->IsEditing = event == vtkCommand::LeftButtonPressEvent && this->Values &&
-    this->Plot.Contains(this->Renderer, position[0], position[1]);
-  return this->IsEditing || wasEditing;
-}
-
-bool Viewer::OnMouseMove(vtkObject*, unsigned long, void*)
-{
-  if (!this->IsEditing)
-  {
-    return false;
-  }
-  const int* position = this->Interactor->GetEventPosition();
-  const int* last = this->Interactor->GetLastEventPosition();
-  const double range = this->Values->Range[1] - this->Values->Range[0];
-  this->Shown.Level += range * (position[0] - last[0]) / TransferPlot::Width;
-  this->Shown.Width =
-    std::clamp(this->Shown.Width + range * (position[1] - last[1]) / TransferPlot::Height,
-      1e-3 * range, 2.0 * range);
-  this->ShowTransfer();
   return true;
 }
 
@@ -342,10 +281,6 @@ void Viewer::OnFrame(vtkObject* caller, unsigned long, void*)
       this->LastTexts = now;
       this->ShowTexts();
     }
-    if (this->Values && this->ShowNumbers)
-    {
-      this->Plot.Draw(this->Renderer, *this->Values, this->Shown); // the window may have a new size
-    }
     return;
   }
   this->RenderTime = std::chrono::duration<double>(now - this->FrameBegin).count();
@@ -395,11 +330,6 @@ void Viewer::ShowTexts()
     milliseconds * this->Session->GetResamplingTime(), milliseconds * this->UploadTime,
     milliseconds * this->RenderTime, this->Shown.Level, this->Shown.Width,
     this->Shown.GetName().c_str(), this->HandleRadiusPart * this->Diagonal);
-  const bool isShown = this->ShowNumbers && this->Values;
   this->Numbers->SetInput(text);
-  this->Numbers->SetVisibility(isShown ? 1 : 0);
-  this->Plot.SetVisible(isShown);
-  const std::string line = this->Prompt.GetLine();
-  this->PromptLine->SetInput(line.c_str());
-  this->PromptLine->SetVisibility(line.empty() ? 0 : 1);
+  this->Numbers->SetVisibility(this->ShowNumbers && this->Values ? 1 : 0);
 }

@@ -3,9 +3,7 @@
 #define DeformInteractiveViewer_h
 
 #include "Arguments.h"
-#include "LinePrompt.h"
 #include "Transfer.h"
-#include "TransferPlot.h"
 #include "VolumeView.h"
 
 #include <vtkNew.h>
@@ -44,11 +42,9 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
-  // Observers. Those that return true stop the event: later observers do not get it.
-  bool OnKeyPress(vtkObject*, unsigned long, void*);
+  void OnKeyPress(vtkObject*, unsigned long, void*);
+  /// Returns whether the key is one of this program. The style does not get it then.
   bool OnChar(vtkObject*, unsigned long, void*);
-  bool OnLeftButton(vtkObject*, unsigned long event, void*);
-  bool OnMouseMove(vtkObject*, unsigned long, void*);
   void OnOutput(vtkObject*, unsigned long, void*);
   void OnFrame(vtkObject*, unsigned long event, void*);
   void OnInteraction(vtkObject*, unsigned long event, void*);
@@ -57,9 +53,10 @@ private:
 
   void OpenVolume(const std::string& path);
   void Open(const std::string& path);
+  /// Saves all files under a new name, and shows it or an error message.
+  void SaveAll();
+  /// Throws a Failure if the file cannot be written.
   void Save(const std::string& path);
-  /// Returns an error message, or "".
-  std::string TrySave(const std::string& path);
   void LoadSession(const std::string& path);
   void ToggleRecording();
   void StartRecording(const std::string& path);
@@ -82,23 +79,19 @@ private:
   vtkNew<vtkDeformVolumeSession> Session;
   vtkNew<vtkDeformVolumeInteractorStyle> Style;
   VolumeView View;
-  TransferPlot Plot;
   std::unique_ptr<Histogram> Values; // null before there is a volume
   Transfer Shown;
   double Diagonal = 0.0;         // of the volume, in world units
   double HandleRadiusPart = 0.0; // as a fraction of Diagonal
-  LinePrompt Prompt;
   vtkNew<vtkTextActor> Numbers;
-  vtkNew<vtkTextActor> PromptLine;
   vtkSmartPointer<vtkInteractorEventRecorder> Recorder; // null if nothing is recorded
-  std::string FileName = "deformed";                    // proposed by Save, without extension
+  std::string FileName;                                 // the beginning of the names of SaveAll()
   std::string Dropped;                                  // path of a file to open
   int DropTimer = -1;                                   // opens Dropped
   bool ShowNumbers = true;
   bool IsChanged = false; // since the last frame
   bool IsReplaying = false;
   bool IsInteracting = false; // a tool is used, or the camera is moved
-  bool IsEditing = false;     // the mouse drags the plot
   int Frame = 0;              // number of the next picture of --frames
 
   double UploadTime = 0.0;

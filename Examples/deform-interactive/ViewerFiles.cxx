@@ -19,8 +19,10 @@
 #include <vtkWindowToImageFilter.h>
 #include <vtksys/SystemTools.hxx>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace
 {
@@ -48,7 +50,7 @@ void Viewer::OpenVolume(const std::string& path)
   this->Session->SetMovingSamplingFactor(volume.Image->GetNumberOfPoints() > ManyVoxels ? 2 : 1);
   this->Style->Forget();
   this->Values = std::make_unique<Histogram>(volume.Image);
-  this->FileName = vtksys::SystemTools::GetFilenameWithoutExtension(path) + "-deformed";
+  this->FileName = vtksys::SystemTools::GetFilenameWithoutExtension(path);
   this->ChoosePreset(Transfer::AUTOMATIC);
   double bounds[6];
   volume.Image->GetBounds(bounds);
@@ -105,14 +107,14 @@ void Viewer::Open(const std::string& path)
   }
 }
 
-std::string Viewer::TrySave(const std::string& path)
+void Viewer::Save(const std::string& path)
 {
-  const std::string ending = GetEnding(path);
   if (!this->Values)
   {
-    return "There is no volume. Open one first.";
+    throw Failure("There is no volume. Open one first.");
   }
-  bool isSaved = false;
+  const std::string ending = GetEnding(path);
+  bool isSaved = true;
   if (ending == ".vti")
   {
     isSaved = this->Session->SaveVolume(path);
@@ -129,22 +131,43 @@ std::string Viewer::TrySave(const std::string& path)
   {
     this->Interactor->Render();
     this->SavePicture(path);
-    isSaved = true;
   }
   else
   {
-    return "The name " + path + " must end in .vti, .vtu, .xml or .png.";
+    throw Failure("The name " + path + " must end in .vti, .vtu, .xml or .png.");
   }
-  return isSaved ? "" : this->Session->GetErrorMessage();
+  if (!isSaved)
+  {
+    throw Failure(this->Session->GetErrorMessage());
+  }
 }
 
-void Viewer::Save(const std::string& path)
+void Viewer::SaveAll()
 {
+  std::vector<std::string> endings{ ".vti", ".xml", ".png" };
+  if (this->Session->GetModel() >= vtkDeformVolumeSession::MASS_SPRING)
+  {
+    endings.emplace_back(".vtu");
+  }
+  std::string name;
+  const auto exists = [&name](const std::string& ending)
+  { return vtksys::SystemTools::FileExists(name + ending); };
+  int number = 0;
+  do
+  {
+    ++number;
+    name = this->FileName + "-deformed-" + std::to_string(number);
+  } while (std::any_of(endings.begin(), endings.end(), exists));
   try
   {
-    this->Announce("Saving " + path);
-    const std::string error = this->TrySave(path);
-    this->Style->ShowMessage(error.empty() ? path + " is saved." : error);
+    this->Announce("Saving " + name);
+    std::string saved;
+    for (const std::string& ending : endings)
+    {
+      this->Save(name + ending);
+      saved += " " + ending;
+    }
+    this->Style->ShowMessage(name + " is saved:" + saved);
   }
   catch (const Failure& failure)
   {
@@ -185,7 +208,7 @@ void Viewer::ToggleRecording()
   this->Recorder->Stop();
   this->Recorder->EnabledOff();
   this->Style->ShowMessage(std::string("Events were recorded to ") + this->Recorder->GetFileName() +
-    ". Press o to replay.");
+    ". Drop it onto the window to replay it.");
   this->Recorder = nullptr;
 }
 

@@ -84,11 +84,11 @@ class Source:
 
 
 write_vti(make_ball(dimensions=(31, 28, 25), spacing=(1.0, 1.0, 1.0)), path("ball.vti"))
-WindowEvents().keys("s\r").wait(2).write(path("events.log"))
+WindowEvents().keys("s").wait(2).write(path("events.log"))
 with subprocess.Popen([program, path("ball.vti"), "--size", "200,200"], stdout=subprocess.PIPE,
                       stderr=subprocess.STDOUT, cwd=path()) as running:
     try:
         Source().drop(path("events.log"))
-        wait_for(lambda: os.path.exists(path("ball-deformed.vti")))
+        wait_for(lambda: os.path.exists(path("ball-deformed-1.xml")))
     finally:
         running.kill()
