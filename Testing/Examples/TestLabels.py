@@ -80,17 +80,17 @@ with open(path("text.nii"), "w", encoding="utf-8") as file:
     file.write("no labels")
 refuses(1, ["cannot read", "not a NIfTI file"], "text.nii")
 
-# Labels on other grids: the error names the number that differs.
+# Labels on other grids: the error states how the grids differ.
 for change, expected in (
         (lambda image: image.SetDimensions(25, 22, 18), "18 voxels on axis z, and the volume has 19"),
         (lambda image: image.SetDimensions(24, 22, 19), "24 voxels on axis x, and the volume has 25"),
         (lambda image: image.SetSpacing(1, 1.51, 2),
-         "spacing on axis y is 1.51, and that of the volume is 1.5."),
+         "The position of a corner is "),
         (lambda image: image.SetOrigin(-3, 5.5, 7),
-         "first voxel, on axis y of the world, is 5.5, and that of the volume is 5."),
-        (lambda image: image.SetDirectionMatrix(turn(2, 31).ravel()), "direction of axis "),
-        (lambda image: image.SetDirectionMatrix((1, 0, 0, 0, 1, 0, 0, 0, 1)), "direction of axis "),
-        (lambda image: image.SetExtent(1, 25, 0, 21, 0, 18), "first voxel, on axis ")):
+         "The position of a corner is -3, 5.5, 7, and in the volume -3, 5, 7."),
+        (lambda image: image.SetDirectionMatrix(turn(2, 31).ravel()), "The position of a corner is "),
+        (lambda image: image.SetDirectionMatrix((1, 0, 0, 0, 1, 0, 0, 0, 1)), "The position of a corner is "),
+        (lambda image: image.SetExtent(1, 25, 0, 21, 0, 18), "The position of a corner is ")):
     other = vtkImageData()
     other.CopyStructure(volume)
     change(other)

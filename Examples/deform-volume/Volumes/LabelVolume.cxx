@@ -15,6 +15,7 @@
 #include <vtkDeformVolumeFilter.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
+#include <vtkMath.h>
 #include <vtkPointData.h>
 
 #include <algorithm>
@@ -54,53 +55,22 @@ void CheckWhole(Array* array, const std::string& name, const std::string& path)
   }
 }
 
-/// A number in which two grids of the same dimensions differ.
-struct GridDifference
-{
-  std::string Name;
-  double OfVolume = 0.0;
-  double OfLabels = 0.0;
-  /// Displacement of the farthest voxel by this difference alone, in voxels.
-  double Voxels = 0.0;
-};
+using Position = std::array<double, 3>;
 
-GridDifference FindLargestDifference(vtkImageData* volume, vtkImageData* labels)
+// Returns the position of a voxel at a corner of an image. corner: 0 to 7.
+Position GetCorner(vtkImageData* image, int corner)
 {
-  const auto ofVolume = GetAxes(volume);
-  const auto ofLabels = GetAxes(labels);
-  GridDifference largest;
-  const auto look = [&](const std::string& name, double first, double second, double voxels)
-  {
-    if (!(voxels <= largest.Voxels))
-    {
-      largest = { name, first, second, voxels };
-    }
-  };
-  double shortest = std::abs(volume->GetSpacing()[0]);
-  for (int axis = 1; axis < 3; ++axis)
-  {
-    shortest = std::min(shortest, std::abs(volume->GetSpacing()[axis]));
-  }
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const std::string name(1, "xyz"[axis]);
-    const double cells = volume->GetDimensions()[axis] - 1;
-    const double spacing = volume->GetSpacing()[axis];
-    const double other = labels->GetSpacing()[axis];
-    look("spacing on axis " + name, spacing, other, std::abs((other / spacing - 1.0) * cells));
-    for (int row = 0; row < 3; ++row)
-    {
-      const double first = ofVolume->GetElement(row, axis);
-      const double second = ofLabels->GetElement(row, axis);
-      look("direction of axis " + name + " (its component " + "xyz"[row] + ")", first, second,
-        std::abs((second - first) * spacing) * cells / shortest);
-    }
-    const double first = ofVolume->GetElement(axis, 3);
-    const double second = ofLabels->GetElement(axis, 3);
-    look("first voxel, on axis " + name + " of the world,", first, second,
-      std::abs(second - first) / shortest);
-  }
-  return largest;
+  int extent[6];
+  image->GetExtent(extent);
+  Position position;
+  image->TransformIndexToPhysicalPoint(
+    extent[corner & 1], extent[2 + (corner >> 1 & 1)], extent[4 + (corner >> 2)], position.data());
+  return position;
+}
+
+std::string GetText(const Position& position)
+{
+  return MakeText(std::setprecision(9), position[0], ", ", position[1], ", ", position[2]);
 }
 
 void CheckGrid(vtkImageData* volume, vtkImageData* labels, const std::string& path)
@@ -122,11 +92,19 @@ void CheckGrid(vtkImageData* volume, vtkImageData* labels, const std::string& pa
   }
   // Much larger than the rounding of files, and much smaller than visible differences.
   constexpr double tolerance = 0.01;
-  const GridDifference difference = FindLargestDifference(volume, labels);
-  if (!(difference.Voxels <= tolerance))
+  const double* const spacing = volume->GetSpacing();
+  const double voxel =
+    std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
+  for (int corner = 0; corner < 8; ++corner)
   {
-    fail(MakeText("Their ", difference.Name, " is ", std::setprecision(9), difference.OfLabels,
-      ", and that of the volume is ", difference.OfVolume));
+    const Position ofLabels = GetCorner(labels, corner);
+    const Position ofVolume = GetCorner(volume, corner);
+    const double square = vtkMath::Distance2BetweenPoints(ofLabels.data(), ofVolume.data());
+    if (!(std::sqrt(square) <= tolerance * voxel))
+    {
+      fail("The position of a corner is " + GetText(ofLabels) + ", and in the volume " +
+        GetText(ofVolume));
+    }
   }
 }
 
