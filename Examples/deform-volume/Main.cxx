@@ -332,7 +332,8 @@ void DeformVolume(const Options& options, Messages& messages)
     filter->SetDeformationData(deformation.Data);
     const ProgressBar bar(filter, "deforming", !options.Quiet);
     filter->Update();
-    messages.Check("cannot deform the volume");
+    messages.Check(
+      "cannot deform the volume" + (options.Mesh.empty() ? "" : " with " + options.Mesh));
   };
   std::optional<Movie> movie;
   double movieTime = 0.0;

@@ -3,9 +3,7 @@
 
 #include "Failure.h"
 
-#include <vtkBoundingBox.h>
 #include <vtkCell.h>
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkCompositeDataIterator.h>
@@ -46,10 +44,20 @@ private:
   std::map<int, int> Known;
 };
 
-bool IsGrid(vtkDataSet* data)
+/// Whether a dataset is a grid with three-dimensional cells, which can deform a volume.
+bool HasVolumeCells(vtkDataSet* data)
 {
-  return vtkUnstructuredGrid::SafeDownCast(data) || vtkStructuredGrid::SafeDownCast(data) ||
-    vtkRectilinearGrid::SafeDownCast(data);
+  const bool isGrid = vtkUnstructuredGrid::SafeDownCast(data) ||
+    vtkStructuredGrid::SafeDownCast(data) || vtkRectilinearGrid::SafeDownCast(data);
+  CellDimensions dimensions;
+  for (vtkIdType cell = 0; isGrid && cell < data->GetNumberOfCells(); ++cell)
+  {
+    if (dimensions.Get(data->GetCellType(cell)) == 3)
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 std::string DescribeCount(vtkIdType number, const char* one, const char* many)
@@ -151,16 +159,10 @@ std::string GetAdvice(vtkPointData* arrays)
   return "";
 }
 
-// The beginning of a message about a part of a mesh.
-std::string MakeBeginning(const MeshPart& part, const std::string& path)
-{
-  return "cannot use " + path + ": " +
-    (part.Block.empty() ? "" : "in its block " + part.Block + " ");
-}
-
 void CheckArray(const MeshPart& part, const std::string& name, const std::string& path)
 {
-  const std::string what = MakeBeginning(part, path);
+  const std::string what =
+    "cannot use " + path + ": " + (part.Block.empty() ? "" : "in its block " + part.Block + " ");
   vtkDataArray* array = part.Data->GetPointData()->GetArray(name.c_str());
   if (!array)
   {
@@ -177,30 +179,6 @@ void CheckArray(const MeshPart& part, const std::string& name, const std::string
       DescribeCount(array->GetNumberOfComponents(), "component", "components") +
       ", but displacements have 3; " + DescribeArrays(part.Data->GetPointData()) +
       GetAdvice(part.Data->GetPointData()));
-  }
-}
-
-// Throws a Failure if a cell uses a point that does not exist.
-void CheckCells(const MeshPart& part, vtkUnstructuredGrid* grid, const std::string& path)
-{
-  vtkCellArray* cells = grid->GetCells();
-  if (!cells->IsValid())
-  {
-    throw Failure(MakeBeginning(part, path) + "the offsets of the cells do not fit their points");
-  }
-  vtkNew<vtkIdList> points;
-  for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell)
-  {
-    cells->GetCellAtId(cell, points);
-    for (const vtkIdType point : *points)
-    {
-      if (point < 0 || point >= grid->GetNumberOfPoints())
-      {
-        throw Failure(MakeBeginning(part, path) + "cell " + std::to_string(cell) + " uses point " +
-          std::to_string(point) + ", but there are only " +
-          DescribeCount(grid->GetNumberOfPoints(), "point", "points") + ", numbered from 0");
-      }
-    }
   }
 }
 
@@ -259,23 +237,6 @@ std::vector<MeshPart> FindParts(vtkDataObject* object)
   return parts;
 }
 
-bool HasVolumeCells(vtkDataSet* data)
-{
-  if (!IsGrid(data))
-  {
-    return false;
-  }
-  CellDimensions dimensions;
-  for (vtkIdType cell = 0; cell < data->GetNumberOfCells(); ++cell)
-  {
-    if (dimensions.Get(data->GetCellType(cell)) == 3)
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
 void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::string& path)
 {
   bool deforms = false;
@@ -289,7 +250,6 @@ void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::
       deforms = true;
       if (auto* grid = vtkUnstructuredGrid::SafeDownCast(part.Data))
       {
-        CheckCells(part, grid, path);
         CheckPolyhedra(grid, path);
       }
       if (!displacement.empty())
@@ -328,30 +288,6 @@ void CheckField(vtkImageData* field, const std::string& displacement, const std:
                     : "name the array of displacements with --displacement") +
       "; " + DescribeArrays(arrays) + (vectors == 0 ? GetAdvice(arrays) : ""));
   }
-}
-
-double GetMeshLength(vtkDataObject* mesh)
-{
-  vtkBoundingBox box;
-  for (const MeshPart& part : FindParts(mesh))
-  {
-    if (vtkImageData::SafeDownCast(part.Data))
-    {
-      box.AddBounds(part.Data->GetBounds());
-      continue;
-    }
-    CellDimensions dimensions;
-    for (vtkIdType cell = 0; cell < part.Data->GetNumberOfCells(); ++cell)
-    {
-      if (dimensions.Get(part.Data->GetCellType(cell)) == 3)
-      {
-        double bounds[6];
-        part.Data->GetCellBounds(cell, bounds);
-        box.AddBounds(bounds);
-      }
-    }
-  }
-  return box.IsValid() ? box.GetMaxLength() : 0.0;
 }
 
 void CheckSheet(vtkDataObject* sheet, const std::string& path)

@@ -20,17 +20,10 @@ struct MeshPart
 /// Returns a dataset, or all datasets of a composite dataset.
 std::vector<MeshPart> FindParts(vtkDataObject* object);
 
-/// Whether a dataset is a grid with three-dimensional cells, which can deform a volume.
-bool HasVolumeCells(vtkDataSet* data);
-
 /// Throws a Failure, which says what the file holds, if it cannot deform a volume: it has no
-/// three-dimensional cells and is not an image, a cell uses a point that does not exist, a
-/// polyhedron has no faces, or a part does not have the point array of displacements. displacement:
-/// name of the array, or "" if none is needed.
+/// three-dimensional cells and is not an image, a polyhedron has no faces, or a part does not have
+/// the point array of displacements. displacement: name of the array, or "" if none is needed.
 void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::string& path);
-
-/// The longest side of the bounding box of all images and three-dimensional cells.
-double GetMeshLength(vtkDataObject* mesh);
 
 /// Throws a Failure if an image does not have the point array of displacements. If displacement is
 /// "", that is the active vectors, or else the only array of three components.

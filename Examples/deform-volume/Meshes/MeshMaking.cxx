@@ -13,7 +13,6 @@
 #include "ProgressBar.h"
 #include "VTKWriting.h"
 
-#include <vtkBoundingBox.h>
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkLatticeTetrahedraSource.h>
@@ -24,7 +23,6 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iomanip>
 
@@ -167,35 +165,7 @@ void CheckMeshOptions(const Options& options, const Deformation& deformation)
     }
     CheckResampler(options, true);
   }
-  else if (deformation.Rest)
-  {
-    const vtkIdType deformed = deformation.Data->GetNumberOfElements(vtkDataObject::POINT);
-    const vtkIdType rest = deformation.Rest->GetNumberOfElements(vtkDataObject::POINT);
-    if (deformed != rest)
-    {
-      throw Failure("cannot use " + options.Rest + " as the mesh at rest: it has " +
-        std::to_string(rest) + " points, but " + options.Mesh + " has " + std::to_string(deformed) +
-        ". Both files must hold the same mesh");
-    }
-  }
 }
-
-// Warns if one file seems to be in m and the other in mm. The filter does not notice that if both
-// surround the origin, because the mesh then holds some voxels.
-void WarnOfUnits(
-  const Options& options, const Volume& volume, const Deformation& deformation, Messages& messages)
-{
-  const double mesh = GetMeshLength(deformation.Rest ? deformation.Rest : deformation.Data);
-  const double image = vtkBoundingBox(volume.Image->GetBounds()).GetMaxLength();
-  if (mesh > 100.0 * image || 100.0 * mesh < image)
-  {
-    messages.Warn(MakeText(std::setprecision(3), options.Rest.empty() ? options.Mesh : options.Rest,
-      " is ", mesh, " long, and the volume ", image,
-      ". If one of them is in metres and the other in millimetres, scale the points and the "
-      "displacements of the mesh."));
-  }
-}
-
 }
 
 Deformation MakeDeformation(const Options& options, const Volume& volume,
@@ -211,7 +181,6 @@ Deformation MakeDeformation(const Options& options, const Volume& volume,
       deformation.Rest = ReadMesh(options.Rest, "", options, volume, messages);
     }
     CheckMeshOptions(options, deformation);
-    WarnOfUnits(options, volume, deformation, messages);
   }
   else if (!options.Field.empty())
   {
