@@ -59,21 +59,8 @@ void ListDevices()
 // Reports files that cannot be written before the long computations begin.
 void CheckOutputs(const Options& options)
 {
-  std::vector<std::string> paths = options.Outputs;
-  for (const auto* more :
-    { &options.LabelOutputs, &options.Jacobians, &options.InverseFields, &options.PointsOutputs })
+  for (const auto& [option, path] : options.GetOutputs())
   {
-    paths.insert(paths.end(), more->begin(), more->end());
-  }
-  paths.push_back(options.Image);
-  paths.push_back(options.Movie);
-  paths.push_back(options.MeshOutput);
-  for (const std::string& path : paths)
-  {
-    if (path.empty())
-    {
-      continue;
-    }
     std::string folder = vtksys::SystemTools::GetFilenamePath(path);
     folder = !folder.empty() ? folder : path[0] == '/' ? "/" : ".";
     if (!vtksys::SystemTools::FileIsDirectory(folder))
@@ -116,7 +103,7 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
   SetDeformation(filter, options, deformation);
   filter->SetOpenSplits(options.OpenSplits || options.CutsMesh());
   // With a reference, the mode has no effect, and the filter would warn of it.
-  filter->SetOutputBoundsMode(options.VolumeBounds && !reference
+  filter->SetOutputBoundsMode(options.Bounds == "volume" && !reference
       ? vtkDeformVolumeFilter::VOLUME_BOUNDS
       : vtkDeformVolumeFilter::DEFORMED_BOUNDS);
   filter->SetPadding(options.Padding);

@@ -40,12 +40,33 @@ void CheckNumbers(const Options& options)
   }
 }
 
-/// An argument of the command line that names a file, and the option that it belongs to.
-struct NamedFile
+/// Checks the extension of an output. CheckPoints() checks those of --points-output.
+void CheckName(const NamedFile& output)
 {
-  std::string Option;
-  std::string Path;
-};
+  const auto check = [&output](bool canBeWritten, const char* extensions)
+  {
+    if (!canBeWritten)
+    {
+      throw UsageError(output.Option + " " + output.Path + ": the name must end in " + extensions);
+    }
+  };
+  if (output.Option == "--image")
+  {
+    check(HasSuffix(output.Path, { ".png" }), ".png");
+  }
+  else if (output.Option == "--movie")
+  {
+    check(CanWriteMovie(output.Path), ".png, or, if VTK was built with Ogg Theora, in .ogv");
+  }
+  else if (output.Option == "--write-mesh")
+  {
+    check(HasSuffix(output.Path, { ".vtu" }), ".vtu");
+  }
+  else if (output.Option != "--points-output")
+  {
+    check(CanWriteVolume(output.Path), WrittenFormats);
+  }
+}
 
 /// Returns the files to write for one argument.
 std::vector<std::string> GetWrittenFiles(const Options& options, const NamedFile& output)
@@ -103,30 +124,6 @@ bool AreSame(const std::string& first, const std::string& second)
     vtksys::SystemTools::SameFile(first, second);
 }
 
-std::vector<NamedFile> GetOutputs(const Options& options)
-{
-  std::vector<NamedFile> outputs;
-  const auto add = [&](const char* option, const std::vector<std::string>& paths)
-  {
-    for (const std::string& path : paths)
-    {
-      if (!path.empty())
-      {
-        outputs.push_back({ option, path });
-      }
-    }
-  };
-  add("--output", options.Outputs);
-  add("--label-output", options.LabelOutputs);
-  add("--jacobian", options.Jacobians);
-  add("--inverse-field", options.InverseFields);
-  add("--points-output", options.PointsOutputs);
-  add("--write-mesh", { options.MeshOutput });
-  add("--image", { options.Image });
-  add("--movie", { options.Movie });
-  return outputs;
-}
-
 std::vector<std::string> GetInputs(const Options& options)
 {
   std::vector<std::string> inputs{ options.Volume, options.LabelVolume, options.Mesh, options.Rest,
@@ -162,7 +159,7 @@ void CheckWrittenOnce(const NamedFile& file, const NamedFile& other, const std::
 void CheckOverwriting(const Options& options)
 {
   std::vector<std::pair<NamedFile, std::string>> written;
-  for (const NamedFile& output : GetOutputs(options))
+  for (const NamedFile& output : options.GetOutputs())
   {
     const std::vector<std::string> files = GetWrittenFiles(options, output);
     for (const std::string& file : files)
@@ -248,10 +245,6 @@ void CheckModel(const Options& options)
     throw UsageError(std::string(options.SmoothCut ? "--smooth-cut" : "--keep") +
       " cannot be used with --model " + options.Model + ", where --cut splits the mesh");
   }
-  if (options.Model == "chainmail" && !options.MeshOutput.empty())
-  {
-    throw UsageError("--write-mesh requires --tetgen or --lattice. --model chainmail has no mesh");
-  }
   if (options.Model == "chainmail" && options.Pulls.empty())
   {
     throw UsageError("--model chainmail needs at least one --pull X,Y,Z,DX,DY,DZ[,RADIUS]");
@@ -270,79 +263,54 @@ void CheckModel(const Options& options)
 void CheckDeformation(const Options& options)
 {
   CheckModel(options);
+  const bool makesMesh = options.TetGen || options.HasLattice();
   const int deformations = !options.Mesh.empty() + !options.Field.empty() +
     !options.Transforms.empty() + options.TetGen + options.HasLattice() +
     (options.Model == "chainmail");
-  if (deformations == 0 && options.HasTools())
-  {
-    if (!options.MeshOutput.empty())
-    {
-      throw UsageError("--write-mesh requires --tetgen or --lattice");
-    }
-    if (!options.Displacement.empty() || options.Scale != 1.0 || !options.Pushes.empty())
-    {
-      throw UsageError("--push, --displacement and --scale need a deformation: --mesh, --field, "
-                       "--tetgen or --lattice");
-    }
-    if (options.Extrapolate || options.KeepDistance || options.Resampler == "mesh-rasterization")
-    {
-      throw UsageError(std::string(options.Extrapolate ? "--outside extrapolate"
-                           : options.KeepDistance      ? "--keep"
-                                                       : "--resampler mesh-rasterization") +
-        " needs a deformation, such as --mesh, --field or --tetgen. Without one, nothing moves");
-    }
-    return;
-  }
-  if (deformations != 1)
+  if (deformations > 1 || (deformations == 0 && !options.HasTools()))
   {
     throw UsageError("exactly one of --mesh, --field, --transform, --tetgen, --lattice and --model "
                      "chainmail must be given; none is needed with --cut or --carve");
   }
-  if (!options.Mesh.empty())
+  if (deformations == 0 &&
+    (options.Outside == "extrapolate" || options.KeepDistance ||
+      options.Resampler == "mesh-rasterization"))
   {
-    if (options.Displacement.empty() == options.Rest.empty())
-    {
-      throw UsageError("--mesh needs either --displacement (the name of an array of vectors) or "
-                       "--rest (the mesh at rest)");
-    }
-    if (!options.Pushes.empty())
-    {
-      throw UsageError(
-        "--push requires --tetgen or --lattice. The displacements of a --mesh are in its file");
-    }
+    throw UsageError(std::string(options.KeepDistance       ? "--keep"
+                         : options.Outside == "extrapolate" ? "--outside extrapolate"
+                                                            : "--resampler mesh-rasterization") +
+      " needs a deformation, such as --mesh, --field or --tetgen. Without one, nothing moves");
   }
-  else if (!options.Field.empty())
-  {
-    if (!options.Displacement.empty() && IsFieldFile(options.Field) && !IsVTKFile(options.Field))
-    {
-      throw UsageError("--displacement names an array of a .vti file; " + options.Field +
-        " has only one set of vectors");
-    }
-    if (!options.Pushes.empty())
-    {
-      throw UsageError(
-        "--push requires --tetgen or --lattice. The displacements of a --field are in its file");
-    }
-  }
-  else if (!options.Transforms.empty() && !options.Pushes.empty())
-  {
-    throw UsageError(
-      "--push requires --tetgen or --lattice. The displacements of a --transform are in its file");
-  }
-  else if (options.Model == "chainmail" && !options.Pushes.empty())
-  {
-    throw UsageError("--push requires --tetgen or --lattice. Use --pull with --model chainmail");
-  }
-  else if (!options.Displacement.empty() || options.Scale != 1.0)
+  if (options.Mesh.empty() && options.Field.empty() &&
+    (!options.Displacement.empty() || options.Scale != 1.0))
   {
     throw UsageError(std::string(options.Scale != 1.0 ? "--scale" : "--displacement") +
       " requires --mesh or --field");
   }
-  else if (options.Transforms.empty() && options.Model.empty() && options.Pushes.empty() &&
+  if (!makesMesh && !options.Pushes.empty())
+  {
+    throw UsageError(std::string("--push requires --tetgen or --lattice") +
+      (options.Model.empty() ? "" : ". Use --pull with --model chainmail"));
+  }
+  if (!makesMesh && !options.MeshOutput.empty())
+  {
+    throw UsageError("--write-mesh requires --tetgen or --lattice");
+  }
+  if (makesMesh && options.Model.empty() && options.Pushes.empty() &&
     (options.WritesResult() || options.MeshOutput.empty()))
   {
     throw UsageError("--tetgen and --lattice need at least one --push X,Y,Z,DX,DY,DZ,RADIUS, or "
                      "--model");
+  }
+  if (!options.Mesh.empty() && options.Displacement.empty() == options.Rest.empty())
+  {
+    throw UsageError("--mesh needs either --displacement (the name of an array of vectors) or "
+                     "--rest (the mesh at rest)");
+  }
+  if (!options.Displacement.empty() && IsFieldFile(options.Field) && !IsVTKFile(options.Field))
+  {
+    throw UsageError("--displacement names an array of a .vti file; " + options.Field +
+      " has only one set of vectors");
   }
 }
 }
@@ -375,10 +343,10 @@ void CheckResampler(const Options& options, bool isForwardField)
         " needs a --mesh, --tetgen, --lattice or inverse field. It cannot be used with a forward "
         "field or with --model chainmail");
     }
-    if (options.Extrapolate || options.SmoothCut)
+    if (options.Outside == "extrapolate" || options.SmoothCut)
     {
       throw UsageError(what + " cannot be used with " +
-        (options.Extrapolate ? "--outside extrapolate" : "--smooth-cut"));
+        (options.Outside == "extrapolate" ? "--outside extrapolate" : "--smooth-cut"));
     }
   }
 }
@@ -407,32 +375,9 @@ void CheckOptions(const Options& options)
     throw UsageError(
       "nothing to write. Give an output such as --output, --image, --movie or --write-mesh");
   }
-  if (!options.Movie.empty() && !CanWriteMovie(options.Movie))
+  for (const NamedFile& output : options.GetOutputs())
   {
-    throw UsageError("--movie " + options.Movie +
-      ": the name must end in .png, or, if VTK was built with Ogg Theora, in .ogv");
-  }
-  const auto checkNames = [](const std::string& option, const std::vector<std::string>& names)
-  {
-    for (const std::string& name : names)
-    {
-      if (!CanWriteVolume(name))
-      {
-        throw UsageError(option + " " + name + ": the name must end in " + WrittenFormats);
-      }
-    }
-  };
-  checkNames("--output", options.Outputs);
-  checkNames("--label-output", options.LabelOutputs);
-  checkNames("--jacobian", options.Jacobians);
-  checkNames("--inverse-field", options.InverseFields);
-  if (!options.Image.empty() && !HasSuffix(options.Image, { ".png" }))
-  {
-    throw UsageError("--image " + options.Image + ": the name must end in .png");
-  }
-  if (!options.MeshOutput.empty() && !HasSuffix(options.MeshOutput, { ".vtu" }))
-  {
-    throw UsageError("--write-mesh " + options.MeshOutput + ": the name must end in .vtu");
+    CheckName(output);
   }
   if (options.Image.empty() && options.Movie.empty() && (options.Threshold || options.View))
   {

@@ -174,6 +174,9 @@ MaterialOfValues ParseMaterial(const std::string& text)
 
 TransformFile ParseTransform(const std::string& text)
 {
+#ifndef DEFORMVOLUME_HAVE_ITK
+  throw UsageError("--transform: this program was built without ITK, which reads transforms");
+#endif
   const std::string inverted = ",invert";
   TransformFile file;
   file.IsInverted = text.size() > inverted.size() &&
@@ -184,4 +187,30 @@ TransformFile ParseTransform(const std::string& text)
     throw UsageError("--transform " + text + ": expected FILE or FILE,invert");
   }
   return file;
+}
+
+std::array<int, 3> ParseLattice(const std::string& text)
+{
+  const auto nodes =
+    ParseNumbers<int, 3>("--lattice", text, "three node counts NX,NY,NZ with commas between them");
+  if (*std::min_element(nodes.begin(), nodes.end()) < 2)
+  {
+    throw UsageError("--lattice " + text + ": each axis needs at least 2 nodes");
+  }
+  return nodes;
+}
+
+std::array<double, 3> ParseGravity(const std::string& text)
+{
+  return ParseNumbers<double, 3>("--gravity", text, "three numbers X,Y,Z with commas between them");
+}
+
+std::array<double, 3> ParseView(const std::string& text)
+{
+  const auto view = ParseNumbers<double, 3>("--view", text, "three numbers X,Y,Z");
+  if (view == std::array<double, 3>{})
+  {
+    throw UsageError("--view 0,0,0 is not a direction");
+  }
+  return view;
 }

@@ -46,6 +46,9 @@ Fixation ParseFixation(const std::string& text);
 Carving ParseCarving(const std::string& text);
 MaterialOfValues ParseMaterial(const std::string& text);
 TransformFile ParseTransform(const std::string& text);
+std::array<int, 3> ParseLattice(const std::string& text);
+std::array<double, 3> ParseGravity(const std::string& text);
+std::array<double, 3> ParseView(const std::string& text);
 ///@}
 
 /// The Young modulus, Poisson ratio and density of a tissue (vtkElasticDeformation), by its name in

@@ -15,28 +15,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 #include <initializer_list>
 #include <iostream>
-#include <iterator>
 
 namespace
 {
-/// Options whose texts are parsed after the command line.
-struct RawOptions
-{
-  std::string Lattice;
-  std::vector<std::string> Pushes;
-  std::vector<std::string> Pulls;
-  std::vector<std::string> Fixations;
-  std::vector<std::string> Materials;
-  std::string Gravity = "0,0,0";
-  std::vector<std::string> Carvings;
-  std::vector<std::string> Transforms;
-  std::string View;
-  std::string Outside = "discard";
-  std::string Bounds = "deformed";
-};
-
 /// Refuses negative numbers. CLI::NonNegativeNumber prints the largest double in its message.
 const CLI::Validator NotNegative([](std::string& text)
   { return std::strtod(text.c_str(), nullptr) < 0.0 ? text + " is negative" : std::string(); },
@@ -64,6 +48,44 @@ public:
     const std::string& help)
   {
     this->Add(name, values, type, help)->take_all()->expected(1);
+  }
+
+  /// An option whose argument a function parses.
+  template <typename Value, typename Parsed>
+  CLI::Option* Add(const std::string& name, Value& value, Parsed (*parse)(const std::string&),
+    const std::string& type, const std::string& help)
+  {
+    return this->Program
+      .add_option_function<std::string>(
+        name, [&value, parse](const std::string& text) { value = parse(text); }, help)
+      ->type_name(type)
+      ->group(this->Heading);
+  }
+
+  /// An option that may be given several times, and whose arguments a function parses.
+  template <typename Value>
+  void AddList(const std::string& name, std::vector<Value>& values,
+    Value (*parse)(const std::string&), const std::string& type, const std::string& help)
+  {
+    this->AddEach(
+      name, [&values, parse](const std::string& text) { values.push_back(parse(text)); }, type,
+      help);
+  }
+
+  /// Calls take with each argument of an option that may be given several times.
+  void AddEach(const std::string& name, const std::function<void(const std::string&)>& take,
+    const std::string& type, const std::string& help)
+  {
+    this->Program
+      .add_option_function<std::vector<std::string>>(
+        name,
+        [take](const std::vector<std::string>& texts)
+        { std::for_each(texts.begin(), texts.end(), take); },
+        help)
+      ->type_name(type)
+      ->group(this->Heading)
+      ->take_all()
+      ->expected(1);
   }
 
   void AddChoice(const std::string& name, std::string& value, const std::string& type,
@@ -128,85 +150,47 @@ void CheckModelOptions(const CLI::App& program, const Options& options)
   }
 }
 
-template <typename Value>
-void ParseAll(const std::vector<std::string>& texts, Value (*parse)(const std::string&),
-  std::vector<Value>& values)
+/// Sets what follows from the options, and checks them.
+void Complete(const CLI::App& program, Options& options)
 {
-  std::transform(texts.begin(), texts.end(), std::back_inserter(values), parse);
-}
-
-void Complete(const CLI::App& program, const RawOptions& raw, Options& options)
-{
-  if (!raw.Lattice.empty())
-  {
-    options.Lattice = ParseNumbers<int, 3>(
-      "--lattice", raw.Lattice, "three node counts NX,NY,NZ with commas between them");
-    for (const int nodes : options.Lattice)
-    {
-      if (nodes < 2)
-      {
-        throw UsageError("--lattice " + raw.Lattice + ": each axis needs at least 2 nodes");
-      }
-    }
-  }
-  ParseAll(raw.Pushes, ParsePush, options.Pushes);
-  ParseAll(raw.Pulls, ParsePull, options.Pulls);
-  ParseAll(raw.Fixations, ParseFixation, options.Fixations);
-  for (const std::string& text : raw.Materials)
-  {
-    if (FindTissue(text))
-    {
-      SetTissue(program, text, options);
-    }
-    else
-    {
-      options.Materials.push_back(ParseMaterial(text));
-    }
-  }
-  options.Gravity = ParseNumbers<double, 3>(
-    "--gravity", raw.Gravity, "three numbers X,Y,Z with commas between them");
-  ParseAll(raw.Carvings, ParseCarving, options.Carvings);
-#ifndef DEFORMVOLUME_HAVE_ITK
-  if (!raw.Transforms.empty())
-  {
-    throw UsageError("--transform: this program was built without ITK, which reads transforms");
-  }
-#endif
-  ParseAll(raw.Transforms, ParseTransform, options.Transforms);
-  if (!raw.View.empty())
-  {
-    options.View = ParseNumbers<double, 3>("--view", raw.View, "three numbers X,Y,Z");
-    if (*options.View == std::array<double, 3>{ { 0.0, 0.0, 0.0 } })
-    {
-      throw UsageError("--view 0,0,0 is not a direction");
-    }
-  }
-  options.Extrapolate = raw.Outside == "extrapolate";
-  options.VolumeBounds = raw.Bounds == "volume" || !options.Transforms.empty();
   if (!options.Transforms.empty())
   {
-    if (program.count("--bounds") && raw.Bounds != "volume")
+    if (program.count("--bounds") && options.Bounds != "volume")
     {
       throw UsageError("--bounds deformed cannot be used with --transform: the result has the grid "
                        "of the volume, or of --reference");
     }
+    options.Bounds = "volume";
     options.FieldIsInverse = true;
   }
   CheckModelOptions(program, options);
   CheckOptions(options);
 }
 
-void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
+void AddElasticModel(CLI::App& program, Options& options)
 {
   OptionGroup group(program, "With --model fem or mass-spring");
-  group.AddList("--fix", raw.Fixations, "box:X0,X1,Y0,Y1,Z0,Z1|below:Z|label:N",
+  group.AddList("--fix", options.Fixations, ParseFixation, "box:X0,X1,Y0,Y1,Z0,Z1|below:Z|label:N",
     "Fixed nodes: nodes in a box, nodes with a z coordinate of at most Z, or nodes in voxels of "
     "the value N. May be given several times");
-  group.Add("--gravity", raw.Gravity, "X,Y,Z", "Acceleration of gravity, in m/s^2")
-    ->capture_default_str();
+  group
+    .Add("--gravity", options.Gravity, ParseGravity, "X,Y,Z", "Acceleration of gravity, in m/s^2")
+    ->default_str("0,0,0");
   const auto addNumber = [&](const char* name, double& value, const char* help)
   { group.Add(name, value, "NUMBER", help)->capture_default_str(); };
-  group.AddList("--material", raw.Materials,
+  group.AddEach(
+    "--material",
+    [&program, &options](const std::string& text)
+    {
+      if (FindTissue(text))
+      {
+        SetTissue(program, text, options);
+      }
+      else
+      {
+        options.Materials.push_back(ParseMaterial(text));
+      }
+    },
     "TISSUE|MINIMUM:MAXIMUM=TISSUE|MINIMUM:MAXIMUM=E[,NU[,DENSITY]]",
     "Material of voxels whose value is at least MINIMUM and less than MAXIMUM: Young modulus E "
     "(Pa), Poisson ratio NU and DENSITY (kg/m^3), or the values of a TISSUE. Each tetrahedron "
@@ -220,7 +204,7 @@ void AddElasticModel(CLI::App& program, Options& options, RawOptions& raw)
   addNumber("--duration", options.Duration, "With mass-spring: duration of the simulation, in s");
 }
 
-void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
+void AddDeformation(CLI::App& program, Options& options)
 {
   OptionGroup group(
     program, "Deformation (one of --mesh, --field, --transform, --tetgen, --lattice, --model)");
@@ -242,7 +226,7 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     "World coordinates of a --field whose file does not state them: lps (x to the left, y to the "
     "back, z to the head) or ras (x to the right, y to the front, z to the head) [those of the "
     "volume]");
-  group.AddList("--transform", raw.Transforms, "FILE[,invert]",
+  group.AddList("--transform", options.Transforms, ParseTransform, "FILE[,invert]",
     HasITK ? "Transform of a registration, from the result (the fixed image) to the volume (the "
              "moving image), as written by ITK, SimpleITK, ANTs and 3D Slicer: .h5, .tfm, .txt "
              "or .mat with a matrix, a B-spline, a displacement field or a composition, or a "
@@ -274,10 +258,10 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     ->capture_default_str();
   group.AddFlag("--tetgen", options.TetGen,
     "Make a mesh of the body in the volume with TetGen. Use with --push or --model");
-  group.Add("--lattice", raw.Lattice, "NX,NY,NZ",
+  group.Add("--lattice", options.Lattice, ParseLattice, "NX,NY,NZ",
     "Make a mesh of cubes that covers the whole volume, with at most NX, NY and NZ nodes on the "
     "axes. Each cube has five tetrahedra. Use with --push or --model");
-  group.AddList("--push", raw.Pushes, "X,Y,Z,DX,DY,DZ,RADIUS",
+  group.AddList("--push", options.Pushes, ParsePush, "X,Y,Z,DX,DY,DZ,RADIUS",
     "Move the nodes around X,Y,Z (world coordinates) by DX,DY,DZ (world units). The displacement "
     "decreases smoothly to 0 at the distance RADIUS (world units). May be given several times: "
     "displacements are added");
@@ -287,11 +271,11 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
     "of their links require. fem, with --tetgen or --lattice: the equilibrium of the mesh, by "
     "finite elements. mass-spring, with --lattice: a simulation of the mesh for --duration. "
     "Units of length are mm");
-  group.AddList("--pull", raw.Pulls, "X,Y,Z,DX,DY,DZ[,RADIUS]",
+  group.AddList("--pull", options.Pulls, ParsePull, "X,Y,Z,DX,DY,DZ[,RADIUS]",
     "With --model: move the voxels or nodes within RADIUS of X,Y,Z (world coordinates) by "
     "DX,DY,DZ (world units). Without RADIUS, only the nearest voxel or node is moved. May be "
     "given several times");
-  AddElasticModel(program, options, raw);
+  AddElasticModel(program, options);
 
   OptionGroup tools(
     program, "Cuts and carvings of the volume at rest (alone, or with a deformation)");
@@ -303,7 +287,7 @@ void AddDeformation(CLI::App& program, Options& options, RawOptions& raw)
   tools.AddFlag("--smooth-cut", options.SmoothCut,
     "With --cut: divide tetrahedra that a sheet crosses between its two sides, instead of "
     "leaving them out. Requires --resampler exact or automatic");
-  tools.AddList("--carve", raw.Carvings, "sphere:X,Y,Z,RADIUS",
+  tools.AddList("--carve", options.Carvings, ParseCarving, "sphere:X,Y,Z,RADIUS",
     "Carve a sphere out of the volume (world coordinates and units). Voxels within about one "
     "voxel of its surface may stay. May be given several times");
 
@@ -373,10 +357,10 @@ void AddDependencies(CLI::App& program)
   }
 }
 
-void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
+void AddResampling(CLI::App& program, Options& options)
 {
   OptionGroup group(program, "Resampling");
-  group.AddChoice("--outside", raw.Outside, "MODE", { "discard", "extrapolate" },
+  group.AddChoice("--outside", options.Outside, "MODE", { "discard", "extrapolate" },
     "What happens to voxels outside the mesh or field: discard leaves them out, extrapolate "
     "moves them with the nearest tetrahedron");
   group
@@ -387,7 +371,7 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
   group.Add("--reference", options.Reference, "FILE",
     "Image, in a format of VOLUME, whose grid the result gets: size, spacing, direction and "
     "origin. Its values are not used. With --transform, give the fixed image");
-  group.AddChoice("--bounds", raw.Bounds, "MODE", { "deformed", "volume" },
+  group.AddChoice("--bounds", options.Bounds, "MODE", { "deformed", "volume" },
     "Bounds of the result: those of the deformed volume, or those of the volume at rest");
   group
     .Add("--padding", options.Padding, "VOXELS",
@@ -421,7 +405,7 @@ void AddResampling(CLI::App& program, Options& options, RawOptions& raw)
     "variable DEFORMVOLUME_DEVICE, or else the best device]");
 }
 
-void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
+void AddOutput(CLI::App& program, Options& options)
 {
   OptionGroup group(program, "Output");
   group.AddList("-o,--output", options.Outputs, "FILE",
@@ -465,11 +449,42 @@ void AddOutput(CLI::App& program, Options& options, RawOptions& raw)
   group.Add("--threshold", options.Threshold, "NUMBER",
     "Minimum value that the picture shows, approximately [the isovalue of --tetgen, or a fifth "
     "of the range of values]");
-  group.Add("--view", raw.View, "X,Y,Z",
+  group.Add("--view", options.View, ParseView, "X,Y,Z",
     "Direction from the volume to the viewer of the picture [from in front of a head, slightly "
     "to its side]");
   group.AddFlag("-q,--quiet", options.Quiet, "Print only warnings and errors");
 }
+}
+
+std::vector<NamedFile> Options::GetOutputs() const
+{
+  std::vector<NamedFile> outputs;
+  const auto add = [&outputs](const char* option, const std::vector<std::string>& paths)
+  {
+    for (const std::string& path : paths)
+    {
+      if (!path.empty())
+      {
+        outputs.push_back({ option, path });
+      }
+    }
+  };
+  add("--output", this->Outputs);
+  add("--label-output", this->LabelOutputs);
+  add("--jacobian", this->Jacobians);
+  add("--inverse-field", this->InverseFields);
+  add("--points-output", this->PointsOutputs);
+  add("--write-mesh", { this->MeshOutput });
+  add("--image", { this->Image });
+  add("--movie", { this->Movie });
+  return outputs;
+}
+
+bool Options::WritesResult() const
+{
+  const std::vector<NamedFile> outputs = this->GetOutputs();
+  return std::any_of(outputs.begin(), outputs.end(),
+    [](const NamedFile& output) { return output.Option != "--write-mesh"; });
 }
 
 bool Options::AreLabels(vtkDataArray* array) const
@@ -500,7 +515,6 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
     "Exit codes: 0 success, 1 failure, 2 wrong usage.\n\n"
     "Example: dent a head to a depth of 15 mm\n"
     "  deform-volume head.nii.gz --tetgen --push 0,88,-50,0,-15,0,30 -o dented.nii.gz");
-  RawOptions raw;
   OptionGroup general(program);
   general.Add("VOLUME", options.Volume, "FILE", std::string("The volume: ") + ReadFormats);
   general
@@ -527,14 +541,14 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
       (HasITK ? " and DICOM series" : ""));
   general.AddFlag(
     "--list-devices", options.ListDevices, "List the OpenCL devices, the best first, and exit");
-  AddDeformation(program, options, raw);
-  AddResampling(program, options, raw);
-  AddOutput(program, options, raw);
+  AddDeformation(program, options);
+  AddResampling(program, options);
+  AddOutput(program, options);
   AddDependencies(program);
   try
   {
     program.parse(argc, argv);
-    Complete(program, raw, options);
+    Complete(program, options);
   }
   catch (const CLI::CallForHelp& help)
   {

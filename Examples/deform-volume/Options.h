@@ -15,6 +15,13 @@
 
 class vtkDataArray;
 
+/// An argument of the command line that names a file, and the option that it belongs to.
+struct NamedFile
+{
+  std::string Option;
+  std::string Path;
+};
+
 /// The options of the command line. Lengths are in the world units of the volume.
 struct Options
 {
@@ -64,9 +71,9 @@ struct Options
   bool SmoothCut = false;
 
   std::string Reference;
-  bool Extrapolate = false;
+  std::string Outside = "discard";
   std::optional<double> KeepDistance;
-  bool VolumeBounds = false;
+  std::string Bounds = "deformed";
   int Padding = 0;
   std::optional<double> Background;
   std::vector<std::string> CategoricalArrays;
@@ -90,13 +97,9 @@ struct Options
   std::optional<std::array<double, 3>> View;
   bool Quiet = false;
 
+  std::vector<NamedFile> GetOutputs() const;
   /// Whether the volume is deformed. Otherwise only --write-mesh writes a file.
-  bool WritesResult() const
-  {
-    return !this->Outputs.empty() || !this->LabelOutputs.empty() || !this->Jacobians.empty() ||
-      !this->InverseFields.empty() || !this->PointsOutputs.empty() || !this->Image.empty() ||
-      !this->Movie.empty();
-  }
+  bool WritesResult() const;
   /// Whether an array holds labels, by --labels or --categorical.
   bool AreLabels(vtkDataArray* array) const;
   bool HasTools() const { return !this->Cuts.empty() || !this->Carvings.empty(); }

@@ -60,7 +60,7 @@ void SetDeformation(Filter* filter, const Options& options, const Deformation& d
   filter->SetPointsAreDeformed(options.PointsAreDeformed);
   filter->SetFieldIsInverse(options.FieldIsInverse);
   filter->SetOutsideMode(options.KeepDistance ? Filter::KEEP
-      : options.Extrapolate                   ? Filter::EXTRAPOLATE
+      : options.Outside == "extrapolate"      ? Filter::EXTRAPOLATE
                                               : Filter::DISCARD);
   filter->SetFadeDistance(options.KeepDistance.value_or(0.0));
 }
