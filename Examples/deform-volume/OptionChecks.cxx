@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fstream>
 #include <string>
 #include <utility>
@@ -22,24 +21,6 @@
 
 namespace
 {
-/// Refuses NaN, which the range checks of CLI11 accept, and infinity.
-void CheckNumbers(const Options& options)
-{
-  const std::pair<const char*, double> numbers[] = { { "--scale", options.Scale },
-    { "--isovalue", options.Isovalue.value_or(0.0) }, { "--edge-length", options.EdgeLength },
-    { "--radius-edge-ratio", options.RadiusEdgeRatio }, { "--young", options.YoungModulus },
-    { "--poisson", options.PoissonRatio }, { "--density", options.Density },
-    { "--duration", options.Duration }, { "--threshold", options.Threshold.value_or(0.0) },
-    { "--keep", options.KeepDistance.value_or(0.0) } };
-  for (const auto& [option, number] : numbers)
-  {
-    if (!std::isfinite(number))
-    {
-      throw UsageError(std::string(option) + " must be a finite number");
-    }
-  }
-}
-
 /// Checks the extension of an output. CheckPoints() checks those of --points-output.
 void CheckName(const NamedFile& output)
 {
@@ -384,7 +365,6 @@ void CheckOptions(const Options& options)
     throw UsageError(
       std::string(options.View ? "--view" : "--threshold") + " requires --image or --movie");
   }
-  CheckNumbers(options);
   CheckOverwriting(options);
   if (options.HasElasticModel() && options.WritesResult() && options.Pulls.empty() &&
     options.Gravity == std::array<double, 3>{})

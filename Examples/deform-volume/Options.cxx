@@ -14,6 +14,7 @@
 #include <vtkDataArray.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <initializer_list>
@@ -24,6 +25,15 @@ namespace
 /// Refuses negative numbers. CLI::NonNegativeNumber prints the largest double in its message.
 const CLI::Validator NotNegative([](std::string& text)
   { return std::strtod(text.c_str(), nullptr) < 0.0 ? text + " is negative" : std::string(); },
+  "");
+
+/// Refuses NaN, which the range checks of CLI11 accept, and infinity.
+const CLI::Validator Finite(
+  [](std::string& text)
+  {
+    return std::isfinite(std::strtod(text.c_str(), nullptr)) ? std::string()
+                                                             : text + " is not a finite number";
+  },
   "");
 
 /// Adds options under a heading of --help.
@@ -41,6 +51,14 @@ public:
     const std::string& name, Value& value, const std::string& type, const std::string& help)
   {
     return this->Program.add_option(name, value, help)->type_name(type)->group(this->Heading);
+  }
+
+  /// value: a double, or an optional one.
+  template <typename Value>
+  CLI::Option* AddNumber(
+    const std::string& name, Value& value, const std::string& help, const char* type = "NUMBER")
+  {
+    return this->Add(name, value, type, help)->check(Finite);
   }
 
   /// An option that may be given several times.
@@ -177,7 +195,7 @@ void AddElasticModel(CLI::App& program, Options& options)
     .Add("--gravity", options.Gravity, ParseGravity, "X,Y,Z", "Acceleration of gravity, in m/s^2")
     ->default_str("0,0,0");
   const auto addNumber = [&](const char* name, double& value, const char* help)
-  { group.Add(name, value, "NUMBER", help)->capture_default_str(); };
+  { group.AddNumber(name, value, help)->capture_default_str(); };
   group.AddEach(
     "--material",
     [&program, &options](const std::string& text)
@@ -253,7 +271,7 @@ void AddDeformation(CLI::App& program, Options& options)
     "in a mesh that --write-mesh has written after a --cut. Otherwise tissue is stretched over "
     "the gap");
   group
-    .Add("--scale", options.Scale, "NUMBER",
+    .AddNumber("--scale", options.Scale,
       "Factor by which the displacements of --mesh or --field are multiplied")
     ->capture_default_str();
   group.AddFlag("--tetgen", options.TetGen,
@@ -292,20 +310,20 @@ void AddDeformation(CLI::App& program, Options& options)
     "voxel of its surface may stay. May be given several times");
 
   OptionGroup tetgen(program, "Mesh made by --tetgen");
-  tetgen.Add("--isovalue", options.Isovalue, "NUMBER",
+  tetgen.AddNumber("--isovalue", options.Isovalue,
     "Minimum value of voxels of the body [computed from the histogram]");
   tetgen.AddChoice("--pieces", options.Pieces, "MODE", { "all", "largest" },
     "Which pieces of the body are meshed: all, or only the largest one. Pieces of at most 26 "
     "voxels are left out");
   tetgen
-    .Add("--edge-length", options.EdgeLength, "NUMBER",
+    .AddNumber("--edge-length", options.EdgeLength,
       "Target length of the edges of the tetrahedra, in world units. 0: a twentieth of the "
       "diagonal of the volume, or with --model fem a tenth, because fem adds nodes in the middle "
       "of edges. Within a --push, edges are not longer than a sixth of its radius")
     ->capture_default_str()
     ->check(NotNegative);
   tetgen
-    .Add("--radius-edge-ratio", options.RadiusEdgeRatio, "NUMBER",
+    .AddNumber("--radius-edge-ratio", options.RadiusEdgeRatio,
       "Quality of the tetrahedra: maximum ratio of the radius of the circumscribed sphere to the "
       "shortest edge, 1 to 100")
     ->capture_default_str()
@@ -351,10 +369,6 @@ void AddDependencies(CLI::App& program)
   program.get_option("--keep")->excludes(program.get_option("--outside"));
   program.get_option("--keep")->excludes(program.get_option("--open-splits"));
   program.get_option("--isovalue")->excludes(program.get_option("--labels"));
-  for (const char* option : { "--mesh", "--field", "--transform" })
-  {
-    program.get_option("--write-mesh")->excludes(program.get_option(option));
-  }
 }
 
 void AddResampling(CLI::App& program, Options& options)
@@ -364,9 +378,10 @@ void AddResampling(CLI::App& program, Options& options)
     "What happens to voxels outside the mesh or field: discard leaves them out, extrapolate "
     "moves them with the nearest tetrahedron");
   group
-    .Add("--keep", options.KeepDistance, "DISTANCE",
+    .AddNumber("--keep", options.KeepDistance,
       "Tissue outside the mesh or field stays where it is. The displacement of the boundary fades "
-      "to zero over DISTANCE, the fade distance (world units). With 0, nothing outside moves")
+      "to zero over DISTANCE, the fade distance (world units). With 0, nothing outside moves",
+      "DISTANCE")
     ->check(NotNegative);
   group.Add("--reference", options.Reference, "FILE",
     "Image, in a format of VOLUME, whose grid the result gets: size, spacing, direction and "
@@ -446,7 +461,7 @@ void AddOutput(CLI::App& program, Options& options)
       "Number of frames of --movie: the number of steps in which handles move, and into which "
       "mass-spring divides --duration")
     ->check(CLI::Range(1, 9999));
-  group.Add("--threshold", options.Threshold, "NUMBER",
+  group.AddNumber("--threshold", options.Threshold,
     "Minimum value that the picture shows, approximately [the isovalue of --tetgen, or a fifth "
     "of the range of values]");
   group.Add("--view", options.View, ParseView, "X,Y,Z",
