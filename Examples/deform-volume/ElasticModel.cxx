@@ -11,6 +11,7 @@
 #include "Volume.h"
 
 #include <vtkAppendPolyData.h>
+#include <vtkBoundingBox.h>
 #include <vtkFiniteElementDeformation.h>
 #include <vtkMassSpringDeformation.h>
 #include <vtkMaterialFromVolume.h>
@@ -36,13 +37,7 @@ bool Fixes(const Fixation& fixation, const double point[3], vtkImageData* volume
   }
   if (fixation.Which == Fixation::Kind::Box)
   {
-    bool isInside = true;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      isInside = isInside && point[axis] >= fixation.Bounds[2 * axis] &&
-        point[axis] <= fixation.Bounds[2 * axis + 1];
-    }
-    return isInside;
+    return vtkBoundingBox(fixation.Bounds.data()).ContainsPoint(point) != 0;
   }
   const vtkIdType voxel = volume->FindPoint(const_cast<double*>(point));
   return voxel >= 0 &&

@@ -35,13 +35,6 @@
 
 namespace
 {
-std::string GetDimensionsText(vtkImageData* image)
-{
-  int dimensions[3];
-  image->GetDimensions(dimensions);
-  return MakeText(dimensions[0], " x ", dimensions[1], " x ", dimensions[2]);
-}
-
 void ListDevices()
 {
   const auto names = vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
@@ -59,8 +52,9 @@ void ListDevices()
 // Reports files that cannot be written before the long computations begin.
 void CheckOutputs(const Options& options)
 {
-  for (const auto& [option, path] : options.GetOutputs())
+  for (const NamedFile& output : options.GetOutputs())
   {
+    const std::string& path = output.Path;
     std::string folder = vtksys::SystemTools::GetFilenamePath(path);
     folder = !folder.empty() ? folder : path[0] == '/' ? "/" : ".";
     if (!vtksys::SystemTools::FileIsDirectory(folder))
@@ -170,13 +164,13 @@ void PrintInputs(const Volume& volume, const LabelVolume& labels, const Deformat
     }
   };
   vtkDataArray* scalars = volume.Image->GetPointData()->GetScalars();
-  print(
-    "volume     ", GetDimensionsText(volume.Image) + " voxels, " + scalars->GetDataTypeAsString());
+  print("volume     ", DescribeSize(volume.Image) + " voxels, " + scalars->GetDataTypeAsString());
   print("labels     ", labels.Describe());
   if (deformation.Data)
   {
     print(vtkImageData::SafeDownCast(deformation.Data) ? "field      " : "mesh       ",
-      MakeText(deformation.NumberOfNodes, " nodes, ", deformation.NumberOfCells, " cells"));
+      MakeText(deformation.Data->GetNumberOfElements(vtkDataObject::POINT), " nodes, ",
+        deformation.Data->GetNumberOfElements(vtkDataObject::CELL), " cells"));
   }
   for (const std::string& edges : deformation.Edges)
   {
@@ -203,7 +197,7 @@ double GetHeld(double background, vtkDataArray* scalars)
 
 void PrintResult(vtkDeformVolumeFilter* filter)
 {
-  std::cout << "result     " << GetDimensionsText(filter->GetOutput()) << " voxels, background "
+  std::cout << "result     " << DescribeSize(filter->GetOutput()) << " voxels, background "
             << GetHeld(
                  filter->GetBackgroundValue(), filter->GetOutput()->GetPointData()->GetScalars())
             << "\n\n"

@@ -62,9 +62,9 @@ for name, words in {
         "empty.txt": "it is damaged, or holds no transform",
         "words.tfm": "it is damaged, or holds no transform",
         "thin.tfm": "it holds ThinPlateSplineKernelTransform_double_3_3, a type",
-        "cut.tfm": 'The line "FixedParameters:" of AffineTransform_double_3_3 is missing',
-        "cut.txt": 'The line "Parameters:" of AffineTransform_double_3_3 is missing',
-        "within.tfm": 'The line "FixedParameters:" of AffineTransform_double_3_3 is missing',
+        "cut.tfm": 'A line "FixedParameters:" of a transform is missing',
+        "cut.txt": 'A line "Parameters:" of a transform is missing',
+        "within.tfm": 'A line "FixedParameters:" of a transform is missing',
         "broken.h5": "it is damaged, or holds no transform",
         "two.tfm": "it holds 2 transforms",
         "planar.tfm": "AffineTransform_double_2_2",
@@ -80,7 +80,6 @@ fails("exactly one of", *affine, "--field", path("warp.nii.gz"), code=2)
 fails("exactly one of", *affine, "--lattice", "3,3,3", code=2)
 fails("--push requires", *affine, "--push", "1,2,3,4,5,6,7", code=2)
 fails("excludes", *affine, "--file-coordinates", code=2)
-fails("excludes", *affine, "--write-mesh", path("no.vtu"), code=2)
 fails("excludes", "--lattice", "3,3,3", "--push", "1,2,3,4,5,6,7", "--reference", path("fixed.mha"),
       "--bounds", "volume", code=2)
 fails("excludes", *affine, "--reference", path("fixed.mha"), "--padding", "2", code=2)

@@ -4,6 +4,7 @@
 #include "Failure.h"
 #include "Files.h"
 #include "ImageAxes.h"
+#include "MeshSpace.h"
 #include "Messages.h"
 #include "VolumeReading.h"
 #include "WorldSpace.h"
@@ -157,22 +158,16 @@ void FlipWorldAxes(vtkMatrix3x3* matrix)
 /// Converts a field of a .vti file, which states no world coordinates, from LPS to RAS or back.
 void FlipWorld(vtkImageData* image)
 {
-  FlipWorldAxes(image);
-  vtkNew<vtkMatrix3x3> matrix;
-  FlipWorldAxes(matrix);
-  std::vector<vtkSmartPointer<vtkDataArray>> vectors;
+  std::vector<std::string> vectors;
   for (int i = 0; i < image->GetPointData()->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* const array = image->GetPointData()->GetArray(i);
-    if (array && array->GetNumberOfComponents() == 3)
+    if (array && array->GetName() && array->GetNumberOfComponents() == 3)
     {
-      vectors.push_back(Turn(array, matrix));
+      vectors.emplace_back(array->GetName());
     }
   }
-  for (const vtkSmartPointer<vtkDataArray>& array : vectors)
-  {
-    image->GetPointData()->AddArray(array); // replaces the array of the same name
-  }
+  FlipWorldAxes(image, vectors);
 }
 
 /// Warns if the vectors seem to be deformed positions, which NiftyReg and voxelmorph call a

@@ -30,8 +30,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <memory>
-#include <sstream>
 
 namespace
 {
@@ -148,37 +148,25 @@ void CheckProgram(const std::string& path, const std::string& what)
   }
 }
 
-// Throws a Failure if a transform of a text file lacks its parameters, as in a file that is cut
+// Throws a Failure if transforms of a text file lack their parameters, as in a file that is cut
 // off. ITK makes such a transform the identity.
 void CheckText(const std::string& path, const std::string& what)
 {
   std::ifstream file(path);
-  std::string name;
-  bool hasParameters = true;
-  bool hasFixedParameters = true;
-  const auto check = [&]
-  {
-    if (!hasParameters || !hasFixedParameters)
-    {
-      throw Failure(what + ": it is damaged or cut off. The line \"" +
-        (hasParameters ? "FixedParameters" : "Parameters") + ":\" of " + name + " is missing");
-    }
-  };
+  std::map<std::string, int> lines;
   for (std::string line; std::getline(file, line);)
   {
-    const std::size_t colon = line.find(':');
-    const std::string key = line.substr(0, colon);
-    if (key == "Transform")
-    {
-      check();
-      name.clear();
-      std::istringstream(line.substr(std::min(colon, line.size() - 1) + 1)) >> name;
-      hasParameters = hasFixedParameters = name.rfind("CompositeTransform", 0) == 0;
-    }
-    hasParameters = hasParameters || key == "Parameters";
-    hasFixedParameters = hasFixedParameters || key == "FixedParameters";
+    const bool isComposite = line.find(" CompositeTransform") != std::string::npos;
+    lines[line.substr(0, line.find(':'))] += isComposite ? 0 : 1;
   }
-  check();
+  for (const char* key : { "Parameters", "FixedParameters" })
+  {
+    if (lines[key] < lines["Transform"])
+    {
+      throw Failure(
+        what + ": it is damaged or cut off. A line \"" + key + ":\" of a transform is missing");
+    }
+  }
 }
 
 // Makes the center of a transform effective. ITK's VersorTransform ignores that of its file.

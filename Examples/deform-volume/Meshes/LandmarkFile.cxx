@@ -17,6 +17,7 @@
 #endif
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -52,21 +53,9 @@ double GetNumber(const std::string& text)
 /// The shortest text that represents the number exactly.
 std::string GetShortestText(double number)
 {
-  std::string text;
-  for (int digits = std::numeric_limits<double>::digits10;
-       digits <= std::numeric_limits<double>::max_digits10; ++digits)
-  {
-    std::ostringstream stream;
-    stream.imbue(std::locale::classic());
-    stream.precision(digits);
-    stream << number + 0.0; // no -0
-    text = stream.str();
-    if (GetNumber(text) == number)
-    {
-      break;
-    }
-  }
-  return text;
+  char text[32];
+  const double withoutSign = number == 0.0 ? 0.0 : number; // no -0
+  return std::string(text, std::to_chars(text, text + sizeof(text), withoutSign).ptr);
 }
 
 /// The columns of a line, without surrounding blanks. Commas in quotation marks do not separate

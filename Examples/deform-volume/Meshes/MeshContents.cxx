@@ -2,6 +2,7 @@
 #include "MeshContents.h"
 
 #include "Failure.h"
+#include "ImageAxes.h"
 
 #include <vtkCell.h>
 #include <vtkCellData.h>
@@ -107,10 +108,7 @@ std::string Describe(vtkDataObject* object)
   const std::vector<MeshPart> parts = FindParts(object);
   if (auto* image = vtkImageData::SafeDownCast(object))
   {
-    int dimensions[3];
-    image->GetDimensions(dimensions);
-    return "an image of " + std::to_string(dimensions[0]) + " x " + std::to_string(dimensions[1]) +
-      " x " + std::to_string(dimensions[2]) + " points";
+    return "an image of " + DescribeSize(image) + " points";
   }
   return parts.empty() ? "no points" : DescribeCells(parts);
 }

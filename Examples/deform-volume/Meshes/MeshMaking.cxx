@@ -225,7 +225,5 @@ Deformation MakeDeformation(const Options& options, const Volume& volume,
       file.Finish(messages, WriteXML(writer.Get(), deformation.Data, file.GetPath()));
     }
   }
-  deformation.NumberOfNodes = deformation.Data->GetNumberOfElements(vtkDataObject::POINT);
-  deformation.NumberOfCells = deformation.Data->GetNumberOfElements(vtkDataObject::CELL);
   return deformation;
 }

@@ -31,8 +31,6 @@ struct Deformation
   /// Numbers of voxels of the body that was meshed, and lengths of edges.
   std::string Body;
   std::vector<std::string> Edges;
-  long long NumberOfNodes = 0;
-  long long NumberOfCells = 0;
 };
 
 /// Reads or computes the deformation of the options. grid: the grid of the result, on which

@@ -79,6 +79,12 @@ double RemoveShear(
 }
 }
 
+std::string DescribeSize(vtkImageData* image)
+{
+  const int* const size = image->GetDimensions();
+  return MakeText(size[0], " x ", size[1], " x ", size[2]);
+}
+
 vtkSmartPointer<vtkMatrix4x4> GetAxes(vtkImageData* image)
 {
   auto axes = vtkSmartPointer<vtkMatrix4x4>::New();

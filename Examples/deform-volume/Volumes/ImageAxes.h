@@ -10,6 +10,9 @@
 class Messages;
 class vtkImageData;
 
+/// Returns the number of voxels on each axis, such as "25 x 22 x 19".
+std::string DescribeSize(vtkImageData* image);
+
 /// Returns the matrix whose columns are the directions of the index axes and the world position of
 /// the first voxel of the extent. It transforms (index - first index) * spacing to the world.
 vtkSmartPointer<vtkMatrix4x4> GetAxes(vtkImageData* image);

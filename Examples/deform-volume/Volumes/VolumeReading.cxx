@@ -3,6 +3,7 @@
 
 #include "Failure.h"
 #include "Files.h"
+#include "ImageAxes.h"
 #include "Messages.h"
 #include "NIfTIReading.h"
 #include "ProgressBar.h"
@@ -199,8 +200,7 @@ Volume ReadVolume(
   volume.Image->GetDimensions(dimensions);
   if (!options.CanBeFlat && std::min({ dimensions[0], dimensions[1], dimensions[2] }) < 2)
   {
-    throw Failure("cannot read " + path + ": it has " + std::to_string(dimensions[0]) + " x " +
-      std::to_string(dimensions[1]) + " x " + std::to_string(dimensions[2]) +
+    throw Failure("cannot read " + path + ": it has " + DescribeSize(volume.Image) +
       " voxels, and a volume needs at least two on each axis");
   }
   return volume;
