@@ -69,16 +69,8 @@ fails(program, 2, "--label-volume requires --label-output", path("in.vti"), *by_
 fails(program, 2, "--label-output requires --label-volume", path("in.vti"), *by_mesh, *volume_output,
       "--label-output", path("o.vti"))
 refuses(2, ["--label-output", "must end in .vti"], "one.vti", output="o.png")
-refuses(2, "written twice", "one.vti", "-o", path("o.vti"))
 fails(program, 2, "overwritten", path("in.vti"), *by_mesh, "--label-volume", path("one.vti"),
       "--label-output", path("one.vti"))
-fails(program, 2, "overwritten", path("in.vti"), *by_mesh, "--label-volume", path("one.vti"),
-      "--label-output", path("o.vti"), "-o", path("one.vti"))
-refuses(1, "no folder", "one.vti", output="none/o.vti")
-refuses(1, ["cannot read", "no such file"], "none.vti")
-with open(path("text.nii"), "w", encoding="utf-8") as file:
-    file.write("no labels")
-refuses(1, ["cannot read", "not a NIfTI file"], "text.nii")
 
 # Labels on other grids: the error states how the grids differ.
 for change, expected in (

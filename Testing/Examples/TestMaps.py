@@ -21,9 +21,6 @@ def fails(words, *options, code=1):
 same = ["--push", "0,0,0,1,0,0,5"]
 fails("the name must end in", *same, "--jacobian", path("jacobian.png"), code=2)
 fails("the name must end in", *same, "--inverse-field", path("field.h5"), code=2)
-fails("is written twice", *same, "--jacobian", path("a.mha"), "--inverse-field", path("a.mha"), code=2)
-fails("would be overwritten", *same, "--inverse-field", path("moving.mha"), code=2)
-fails("there is no folder", *same, "--inverse-field", path("none/a.mha"))
 fails("--density-array dose: the volume has no such array. It has ", *same, "--density-array", "dose",
       "-o", path("a.vti"))
 

@@ -31,19 +31,13 @@ gravity = ("--gravity", "0,0,-1")
 fails = functools.partial(Messages.refuses, program, path)
 
 # Misuse.
-for model in ("fem", "mass-spring"):
-    fails(2, "Give --tetgen or --lattice", "--model", model, *fix, *pull)
-    fails(2, "Use --pull", "--model", model, *lattice, *fix, "--push", "1,2,3,4,5,6,7")
-    fails(2, "expected box:", "--model", model, *lattice, "--fix", "above:3")
-    fails(2, "six numbers", "--model", model, *lattice, "--fix", "box:1,2,3")
-    fails(2, "a number", "--model", model, *lattice, "--fix", "below:")
-    fails(2, "three numbers", "--model", model, *lattice, *fix, "--gravity", "1,2")
-    fails(2, "--young", "--model", model, *lattice, *fix, "--young", "nan")
-    fails(1, "fixes no node", "--model", model, *lattice, *gravity, "--fix", "below:-1e6")
-    fails(1, "Poisson ratio", "--model", model, *lattice, *fix, *gravity, "--poisson", "0.5")
+fails(2, "Give --tetgen or --lattice", "--model", "fem", *fix, *pull)
+fails(2, "Use --pull", "--model", "fem", *lattice, *fix, "--push", "1,2,3,4,5,6,7")
+fails(2, "expected box:", "--model", "fem", *lattice, "--fix", "above:3")
+fails(2, "three numbers", "--model", "fem", *lattice, *fix, "--gravity", "1,2")
+fails(2, "--young", "--model", "fem", *lattice, *fix, "--young", "nan")
 fails(1, "No constraints", "--model", "fem", *lattice, "--gravity", "0,0,-9.81")
-for model in ("fem", "mass-spring"):
-    fails(2, "needs a --pull or --gravity", "--model", model, *lattice, *fix)
+fails(2, "needs a --pull or --gravity", "--model", "fem", *lattice, *fix)
 fails(2, "--fix requires", "--model", "chainmail", *fix, *pull)
 for option, value in (("--gravity", "0,0,1"), ("--young", "5"), ("--poisson", "0.2"), ("--density", "900")):
     fails(2, option + " requires --model fem", "--model", "chainmail", "--pull", "9,20,25,3,0,0,15", option, value)
@@ -55,7 +49,7 @@ fails(2, "--young requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--
 for text in ("5=1", "1:2", "1:2=", "1:2=3,", "1:2=3,0.3,1,4", "2:1=3", "a:2=3"):
     fails(2, f"--material {text}" if text[0] in "25" else "--material", "--model", "fem", *lattice, *fix,
           "--material", text)
-for text in ("0:10=100,,5", "0:10=100,a", "a:2=3"):
+for text in ("0:10=100,,5", "0:10=100,a"):
     fails(2, f"--material {text}: expected", "--model", "fem", *lattice, *fix, "--material", text)
 for text in ("box:1,2", "below:x", "label:"):
     fails(2, f"--fix {text.removesuffix(':')}: expected", "--model", "fem", *lattice, "--fix", text)
@@ -65,11 +59,9 @@ fails(2, "--material liver and --young set the same property", "--model", "fem",
       "--young", "5000")
 fails(2, "--material fat: --material liver already sets the tissue of the body", "--model", "fem", *lattice, *fix,
       "--material", "liver", "--material", "fat")
-fails(2, "--material requires", "--model", "chainmail", *pull, "--material", "liver")
 fails(2, "--material requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--material", "liver")
 fails(1, "Young modulus of material 0", "--model", "fem", *lattice, *fix, *gravity, "--material", "0:9=-1")
 fails(2, "--material requires", "--model", "chainmail", *pull, "--material", "0:9=1")
-fails(1, "no such file", "--model", "fem", *lattice, *fix, *gravity, "--cut", path("none.vtp"))
 fails(2, "--smooth-cut cannot be used with --model fem", "--model", "fem", *lattice, *fix, "--cut", "x.vtp",
       "--smooth-cut")
 fails(2, "--keep cannot be used with --model fem", "--model", "fem", *lattice, *fix, "--cut", "x.vtp", "--keep", "3")

@@ -141,8 +141,6 @@ fails("must end in .vtp, as that of", "some.vtp", "no.stl", code=2)
 fails("must end in .stl, as that of", "some.stl", "no.ply", code=2)
 fails("In 3D Slicer, save the points as .mrk.json", "some.fcsv", "no.fcsv", code=2)
 fails("must end in .vtp, .vtu, .stl, .ply, .csv", "some.xyz", "no.xyz", code=2)
-fails("is written twice", "some.csv", "no.csv", 2, ("--points", path("some.csv"), "--points-output", path("no.csv")))
-fails("there is no folder", "some.csv", "none/no.csv")
 fails("--mesh-space requires", "some.csv", code=2, more=("--mesh-space", "lps"))
 Messages.fails(program, 2, "would be overwritten", path("ball.vti"), *lattice, "--points", path("some.csv"),
                "--points-output", path("some.csv"))
