@@ -121,7 +121,7 @@ def check_sofa(expected):
         write_sofa(path(f"body{step}.vtu"), places + factor * moves, cells, edges=False)
         write_sofa(path(f"body_{step}.vtk"), places + factor * moves, cells, [("rest_position", places)])
         write_sofa(path(f"edges{step}.vtu"), places + factor * moves, find_edges(cells), edges=False)
-    fails(["60 points and 255 lines", "three-dimensional cells"], *mesh("edges1.vtu"), "--rest", path("edges0.vtu"))
+    fails(["60 points and 255 cells", "three-dimensional cells"], *mesh("edges1.vtu"), "--rest", path("edges0.vtu"))
     fails("there are no point arrays", *mesh("body1.vtu"), *displacement)
     fails(['no point array "displacement"', '"rest_position" (3 components)'], *mesh("body_1.vtk"), *displacement)
     check_same(expected, *mesh("body1.vtu"), "--rest", path("body0.vtu"))

@@ -21,44 +21,30 @@
 #include <vtkVersionMacros.h>
 #include <vtkXMLFileReadTester.h>
 
-#include <array>
-#include <map>
+#include <algorithm>
+#include <set>
 
 namespace
 {
-/// The dimensions of cell types. Caches them, because they need an instance of vtkCell.
-class CellDimensions
-{
-public:
-  int Get(int type)
-  {
-    const auto found = this->Known.find(type);
-    if (found != this->Known.end())
-    {
-      return found->second;
-    }
-    const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
-    return this->Known[type] = cell ? cell->GetCellDimension() : 0;
-  }
-
-private:
-  std::map<int, int> Known;
-};
-
 /// Whether a dataset is a grid with three-dimensional cells, which can deform a volume.
 bool HasVolumeCells(vtkDataSet* data)
 {
-  const bool isGrid = vtkUnstructuredGrid::SafeDownCast(data) ||
-    vtkStructuredGrid::SafeDownCast(data) || vtkRectilinearGrid::SafeDownCast(data);
-  CellDimensions dimensions;
-  for (vtkIdType cell = 0; isGrid && cell < data->GetNumberOfCells(); ++cell)
+  if (!vtkUnstructuredGrid::SafeDownCast(data) && !vtkStructuredGrid::SafeDownCast(data) &&
+    !vtkRectilinearGrid::SafeDownCast(data))
   {
-    if (dimensions.Get(data->GetCellType(cell)) == 3)
-    {
-      return true;
-    }
+    return false;
   }
-  return false;
+  std::set<int> types;
+  for (vtkIdType cell = 0; cell < data->GetNumberOfCells(); ++cell)
+  {
+    types.insert(data->GetCellType(cell));
+  }
+  return std::any_of(types.begin(), types.end(),
+    [](int type)
+    {
+      const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+      return cell && cell->GetCellDimension() == 3;
+    });
 }
 
 std::string DescribeCount(vtkIdType number, const char* one, const char* many)
@@ -66,51 +52,21 @@ std::string DescribeCount(vtkIdType number, const char* one, const char* many)
   return std::to_string(number) + " " + (number == 1 ? one : many);
 }
 
-// For example "27 points, 12 triangles or other faces and 3 lines".
-std::string DescribeCells(const std::vector<MeshPart>& parts)
-{
-  vtkIdType points = 0;
-  std::array<vtkIdType, 4> cells{};
-  CellDimensions dimensions;
-  for (const MeshPart& part : parts)
-  {
-    points += part.Data->GetNumberOfPoints();
-    for (vtkIdType cell = 0; cell < part.Data->GetNumberOfCells(); ++cell)
-    {
-      ++cells.at(static_cast<std::size_t>(dimensions.Get(part.Data->GetCellType(cell))));
-    }
-  }
-  std::vector<std::string> words{ DescribeCount(points, "point", "points") };
-  const std::array<std::array<const char*, 2>, 4> names{ { { { "vertex cell", "vertex cells" } },
-    { { "line", "lines" } }, { { "triangle or other face", "triangles or other faces" } },
-    { { "three-dimensional cell", "three-dimensional cells" } } } };
-  for (std::size_t dimension = 4; dimension-- > 0;)
-  {
-    if (cells[dimension] > 0)
-    {
-      words.push_back(DescribeCount(cells[dimension], names[dimension][0], names[dimension][1]));
-    }
-  }
-  if (words.size() == 1)
-  {
-    words.emplace_back("no cells");
-  }
-  std::string text = words.front();
-  for (std::size_t i = 1; i < words.size(); ++i)
-  {
-    text += (i + 1 < words.size() ? ", " : " and ") + words[i];
-  }
-  return text;
-}
-
+// For example "27 points and 12 cells".
 std::string Describe(vtkDataObject* object)
 {
-  const std::vector<MeshPart> parts = FindParts(object);
   if (auto* image = vtkImageData::SafeDownCast(object))
   {
     return "an image of " + DescribeSize(image) + " points";
   }
-  return parts.empty() ? "no points" : DescribeCells(parts);
+  vtkIdType points = 0;
+  vtkIdType cells = 0;
+  for (const MeshPart& part : FindParts(object))
+  {
+    points += part.Data->GetNumberOfPoints();
+    cells += part.Data->GetNumberOfCells();
+  }
+  return DescribeCount(points, "point", "points") + " and " + DescribeCount(cells, "cell", "cells");
 }
 
 std::string DescribeArrays(vtkPointData* arrays)
@@ -261,7 +217,7 @@ void CheckMesh(vtkDataObject* mesh, const std::string& displacement, const std::
     throw Failure("cannot use " + path + " as a mesh: it holds " + Describe(mesh) +
       (hasImages ? ", including blocks of image data. Such blocks are ignored. Give an image as a "
                    "displacement field (--field), in a file of its own"
-                 : ". A mesh needs three-dimensional cells, such as tetrahedra and hexahedra"));
+                 : ", but no three-dimensional cells, such as tetrahedra and hexahedra"));
   }
 }
 
