@@ -76,7 +76,7 @@ for name in ("negative.mhd", "negative.nrrd", "negative.nii"):
 with open(path("negative.nii"), "rb") as file:
     assert struct.unpack_from("<3f", file.read(), 80) == (1.0, 1.5, 2.0), "the q-form needs positive spacings"
 
-# UTM coordinates: a warning states how far the single precision of a NIfTI file shifts voxels, here by 0.044 in y.
+# UTM coordinates: a warning states by how much the single precision of a NIfTI file shifts voxels at most.
 far = make_ball(spacing=(0.2, 0.3, 0.4), origin=(500000.123, 5000000.456, 7.0), direction=turned)
 write_vti(far, path("far.vti"))
 small = ("--lattice", "3,3,3", "--push", "500000,5000000,7,0.00001,0,0,1000", "--bounds", "volume", "--quiet")
@@ -86,8 +86,8 @@ with open(path("far.nii"), "rb") as file:
 corners = numpy.array([[x, y, z, 1] for x in (0, 24) for y in (0, 21) for z in (0, 18)])
 shift = numpy.linalg.norm(corners @ (stored - get_matrix(far)).T, axis=1).max()
 found = re.findall(r"shifts voxels of \S+/far\.nii by up to (\S+), (\S+) times the smallest spacing", errors)
-# The numbers have three digits.
-assert found and numpy.allclose(numpy.array(found, float), [[shift, shift / 0.2]], rtol=5e-3), (errors, shift)
+most, voxels = numpy.array(found, float)[0]
+assert 0.04 < shift < most < 1 and numpy.isclose(voxels, most / 0.2, rtol=1e-2), (errors, shift)
 for source, name in (("far.vti", "far.mhd"), ("far.vti", "far.nrrd"), ("in.vti", "near.nii")):
     _, errors = call(program, path(source), *small, "-o", path(name))
     assert "shifts voxels" not in errors, errors

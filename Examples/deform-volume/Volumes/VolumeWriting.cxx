@@ -13,7 +13,6 @@
 #endif
 
 #include <vtkDataArray.h>
-#include <vtkMath.h>
 #include <vtkNIFTIImageWriter.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -28,6 +27,7 @@
 #include <cstring>
 #include <fstream>
 #include <iomanip>
+#include <limits>
 #include <vector>
 
 namespace
@@ -83,40 +83,19 @@ vtkSmartPointer<vtkImageData> MoveExtentToZero(vtkImageData* image)
   return moved;
 }
 
-double FindRounding(double value)
+// Warns if the single precision of a NIfTI header shifts the voxels of an image.
+void WarnOfRounding(vtkImageData* image, const std::string& path, Messages& messages)
 {
-  return static_cast<float>(value) - value;
-}
-
-// Returns how far from its position a corner voxel is at most, in a NIfTI file. Its header holds
-// the axes, times the spacing, in single precision.
-double FindRounding(vtkImageData* image, vtkMatrix4x4* axes)
-{
-  double farthest = 0.0;
-  for (int corner = 0; corner < 8; ++corner)
+  double largest = 0.0; // coordinate
+  for (int i = 0; i < 6; ++i)
   {
-    double shift[3];
-    for (int row = 0; row < 3; ++row)
-    {
-      shift[row] = FindRounding(axes->GetElement(row, 3));
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const int index = (corner >> axis & 1) * (image->GetDimensions()[axis] - 1);
-        shift[row] += index * FindRounding(axes->GetElement(row, axis) * image->GetSpacing()[axis]);
-      }
-    }
-    farthest = std::max(farthest, vtkMath::Norm(shift));
+    largest = std::max(largest, std::abs(image->GetBounds()[i]));
   }
-  return farthest;
-}
-
-void WarnOfRounding(
-  vtkImageData* image, vtkMatrix4x4* axes, const std::string& path, Messages& messages)
-{
-  constexpr double precisionOfResampling = 1.0 / 256.0; // in voxels
   const double* const spacing = image->GetSpacing();
-  const double smallest = *std::min_element(spacing, spacing + 3);
-  const double rounding = FindRounding(image, axes);
+  const double smallest =
+    std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
+  const double rounding = largest * std::numeric_limits<float>::epsilon();
+  constexpr double precisionOfResampling = 1.0 / 256.0; // in voxels
   if (rounding > precisionOfResampling * smallest)
   {
     messages.Warn(MakeText(std::setprecision(3),
@@ -236,7 +215,7 @@ void WriteNIfTI(
   OutputFile file(path);
   const std::string plain = file.GetPath() + (isCompressed ? ".part.nii" : "");
   const auto axes = GetAxesIn(volume, WorldAxes::RightAnteriorSuperior);
-  WarnOfRounding(image, axes, path, messages);
+  WarnOfRounding(volume.Image, path, messages);
   const NIfTIForms& forms = volume.Forms;
   const bool keepsForms = forms.SFormCode != 0 || forms.QFormCode != 0;
   vtkNew<vtkNIFTIImageHeader> header;
