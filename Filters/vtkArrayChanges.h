@@ -73,7 +73,8 @@ public:
   ///@{
   /**
    * Set/Get the array of this log. The array holds a reference to the log, and has only one log: a
-   * new one replaces the last one. The new log is empty. Default: null.
+   * new one replaces the last one. The new log is empty. SetArray() marks the array as modified, so
+   * that the next update reads all of it: values may have been written before. Default: null.
    */
   void SetArray(vtkAbstractArray* array);
   vtkAbstractArray* GetArray();

@@ -85,8 +85,8 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfInputs(vtkImageData* volume,
   {
     auto* const field = vtkImageData::SafeDownCast(source.Shape);
     warnings.insert(field
-        ? deformvolume::DescribeSmallness(deformvolume::GetGeometry(field), mapped.Whole)
-        : deformvolume::DescribeSmallness(deformation.GetMeshAtRest(), mapped.Whole));
+        ? deformvolume::FindFaultOfSize(deformvolume::GetGeometry(field), mapped.Whole)
+        : deformvolume::FindFaultOfSize(deformation.GetMeshAtRest(), mapped.Whole));
     if (HasFloats(source.GetRestParts()))
     {
       warnings.insert(deformvolume::DescribeRounding(deformation.GetMeshAtRest(), mapped.Whole));

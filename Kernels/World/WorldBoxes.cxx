@@ -68,6 +68,14 @@ bool IsSmall(const IndexBounds& box, const ImageGeometry& volume)
   return glm::all(glm::lessThan(box.Max - box.Min, most));
 }
 
+// Whether a box in indices of a volume is more than ten times as long as the volume on each axis.
+bool IsLarge(const IndexBounds& box, const ImageGeometry& volume)
+{
+  constexpr double times = 10.0;
+  const IndexBounds voxels = GetBox(volume.PointExtent);
+  return glm::all(glm::greaterThan(box.Max - box.Min, times * (voxels.Max - voxels.Min)));
+}
+
 std::string DescribeSmallness(const char* what, const IndexBounds& box, const ImageGeometry& volume)
 {
   return std::string("The ") + what + " is smaller than two voxels of the volume on each axis. " +
@@ -132,14 +140,14 @@ std::string DescribeRounding(const MeshAtRest& mesh, const ImageGeometry& volume
                 : "";
 }
 
-std::string DescribeSmallness(const ImageGeometry& field, const ImageGeometry& volume)
+std::string FindFaultOfSize(const ImageGeometry& field, const ImageGeometry& volume)
 {
   const IndexBounds box =
     TransformBox(volume.GetWorldToIndex() * field.GetIndexToWorld(), GetBox(field.PointExtent));
   return IsSmall(box, volume) ? DescribeSmallness("field", GetWorldBox(field), volume) : "";
 }
 
-std::string DescribeSmallness(const MeshAtRest& mesh, const ImageGeometry& volume)
+std::string FindFaultOfSize(const MeshAtRest& mesh, const ImageGeometry& volume)
 {
   IndexBounds box;
   for (const Tetrahedron& tetrahedron : mesh.Tetrahedra)
@@ -147,6 +155,11 @@ std::string DescribeSmallness(const MeshAtRest& mesh, const ImageGeometry& volum
     for (const std::int32_t node : tetrahedron)
     {
       box.Add(mesh.Points[static_cast<std::size_t>(node)]);
+    }
+    if (IsLarge(box, volume))
+    {
+      return "The cells of the mesh are more than ten times as long as the volume. " +
+        Describe("mesh", FindBox(mesh, volume.GetIndexToWorld()), volume);
     }
     if (!IsSmall(box, volume))
     {

@@ -22,10 +22,11 @@ DEFORMVOLUME_EXPORT void CheckBoxes(const MeshAtRest& mesh, const ImageGeometry&
 /// Returns a warning if a displacement field is so small that its unit is probably not that of the
 /// volume: on each axis of the volume smaller than two voxels, and than a fourth of the volume.
 /// Returns "" if it is not.
-DEFORMVOLUME_EXPORT std::string DescribeSmallness(
+DEFORMVOLUME_EXPORT std::string FindFaultOfSize(
   const ImageGeometry& field, const ImageGeometry& volume);
-/// Returns such a warning for a mesh at rest.
-DEFORMVOLUME_EXPORT std::string DescribeSmallness(
+/// Returns such a warning for a mesh at rest, or one if its first tetrahedron is more than ten times
+/// as long as the volume on each axis.
+DEFORMVOLUME_EXPORT std::string FindFaultOfSize(
   const MeshAtRest& mesh, const ImageGeometry& volume);
 
 /// Returns a warning if single precision rounds rest positions in a volume by more than 1/256

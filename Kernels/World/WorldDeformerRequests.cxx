@@ -579,8 +579,8 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
   }
   if (this->Deformation != Deformations::None && !this->Outside.AreExtrapolated())
   {
-    warn(this->IsMesh() ? DescribeSmallness(this->Mesh.GetAtRest(), *this->Volume)
-                        : DescribeSmallness(this->Field.GetGrid(), *this->Volume));
+    warn(this->IsMesh() ? FindFaultOfSize(this->Mesh.GetAtRest(), *this->Volume)
+                        : FindFaultOfSize(this->Field.GetGrid(), *this->Volume));
   }
   if (this->IsMesh())
   {

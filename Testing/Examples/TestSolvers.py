@@ -158,6 +158,9 @@ def check_units():
     whole = ("--bounds", "volume")
     fails([small, none], *mesh("metres.vtk"), *displacement, *whole, warnings=2)
     deform(*mesh("metres.vtk"), *displacement, "--keep", "1", warnings=[small])
+    write_febio(path("kilometres.vtk"), 1e3 * places, moves, cells, 1.0)
+    large = "The cells of the mesh are more than ten times as long as the volume"
+    deform(*mesh("kilometres.vtk"), *displacement, warnings=[large])
     # A mesh elsewhere contains no voxel, and the error states both boxes.
     write_febio(path("aside.vtk"), 1e-3 * places + 40.0, 1e-3 * moves, cells, 1.0)
     fails(["holds no voxel of the volume", "x from 39.988 to 40.012", "x from -12 to 12", "millimeters"],
