@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DeviceSession.h"
 
+#include "CoincidentPoints.h"
 #include "Device.h"
 #include "MemoryNeeds.h"
 
@@ -279,13 +280,18 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
   }
   if (openSplits != this->CoincidentNodesAreSent || (openSplits && hasSplit))
   {
+    std::vector<std::int32_t> places;
+    bool isSplit = false;
     if (openSplits)
     {
-      this->Coincident.Update(mesh);
+      places = FindCoincidentPoints(mesh.GetPoints());
+      for (std::size_t node = 0; node < places.size() && !isSplit; ++node)
+      {
+        isSplit = static_cast<std::size_t>(places[node]) != node;
+      }
     }
     this->Known = false;
-    this->Deformer.SetCoincidentNodes(
-      openSplits && !this->Coincident.Get().empty() ? this->Coincident.Get().data() : nullptr);
+    this->Deformer.SetCoincidentNodes(isSplit ? places.data() : nullptr);
     this->Known = true;
     this->CoincidentNodesAreSent = openSplits;
   }

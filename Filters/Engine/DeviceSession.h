@@ -2,7 +2,6 @@
 #ifndef DeformVolumeDeviceSession_h
 #define DeformVolumeDeviceSession_h
 
-#include "CoincidentNodes.h"
 #include "Deformation.h"
 #include "FadedMesh.h"
 #include "MappingCache.h"
@@ -106,7 +105,6 @@ private:
   Contents Sent = Contents::None;
   bool HasFadedMesh = false;
   std::uint64_t SentConnectivity = 0;
-  CoincidentNodes Coincident;
   bool CoincidentNodesAreSent = false;
   std::uint64_t SentMapping = 0;
   std::uint64_t SentVectors = 0;
