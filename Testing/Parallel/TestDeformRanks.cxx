@@ -366,7 +366,7 @@ void TestSettings(const Case& from, vtkImageData* whole)
     [](Filter* filter) { filter->GenerateJacobianOff(); });
   test(
     "list of density arrays is not the same on all ranks",
-    [](Filter* filter) { filter->AddDensityArray("double"); },
+    [](Filter* filter) { filter->AddDensityArray("float"); },
     [](Filter* filter) { filter->ClearDensityArrays(); });
 }
 

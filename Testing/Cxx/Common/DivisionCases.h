@@ -30,20 +30,29 @@ struct Case
   std::function<void(vtkDeformVolumeFilter*)> Set = [](vtkDeformVolumeFilter*) {};
 };
 
-/// A volume with arrays of several types that has more than one brick.
+/// A volume that has more than one brick, with an array of shorts and one of floats. The kernels
+/// for other arrays take seconds to compile.
 inline vtkSmartPointer<vtkImageData> MakeVolume(
   const Extent& extent, const glm::dvec3& spacing = glm::dvec3(1.0))
 {
   auto volume = MakeImage(extent, spacing, glm::dvec3(3.0, -2.0, 1.0));
+  AddScalars<short>(
+    volume, "short", [](const glm::dvec3& p) { return 20.0 * (p.x + 0.1 * p.y * p.z); });
+  AddScalars<float>(volume, "float",
+    [](const glm::dvec3& p)
+    { return 100.0 * std::sin(0.7 * p.x) + 90.0 * std::cos(0.9 * p.y) + 35.0 * p.z; });
+  return volume;
+}
+
+/// Adds arrays of other types, among them labels.
+inline void AddOtherTypes(vtkImageData* volume)
+{
   AddScalars<double>(volume, "double", [](const glm::dvec3& p) { return p.x + 0.1 * p.y * p.z; });
   AddScalars<unsigned char>(
     volume, "byte", [](const glm::dvec3& p) { return 120.0 + 100.0 * std::sin(p.x + 0.3 * p.y); });
   AddScalars<long long>(volume, "label",
     [](const glm::dvec3& p) { return std::floor(0.3 * p.x) + 1000.0 * std::floor(0.2 * p.z); });
-  AddScalars<float>(volume, "float",
-    [](const glm::dvec3& p)
-    { return 100.0 * std::sin(0.7 * p.x) + 90.0 * std::cos(0.9 * p.y) + 35.0 * p.z; });
-  return volume;
+  volume->GetPointData()->SetActiveScalars("float");
 }
 
 /// Random bits that depend only on the id of a point or cell.
@@ -145,8 +154,15 @@ inline std::vector<Case> MakeCases()
   add("Runs", volume, deform(MakeMesh(volume, 4), Bend(volume))).Set =
     [](vtkDeformVolumeFilter* filter)
   {
-    filter->AddCategoricalArray("label");
     filter->SetPadding(2);
+    filter->SetBackgroundValue(7.0);
+  };
+  const auto types = MakeVolume(extent);
+  AddOtherTypes(types);
+  add("Other types", types, deform(MakeMesh(types, 4), Bend(types))).Set =
+    [](vtkDeformVolumeFilter* filter)
+  {
+    filter->AddCategoricalArray("label");
     filter->SetBackgroundValue(7.0);
   };
   add("Links", volume, deform(MakeMesh(volume, 24), Bend(volume)));
@@ -191,10 +207,7 @@ inline std::vector<Case> MakeCases()
     return whole;
   }();
   const auto setCubic = [](vtkDeformVolumeFilter* filter)
-  {
-    filter->SetInterpolationToCubicInterpolation();
-    filter->AddCategoricalArray("label");
-  };
+  { filter->SetInterpolationToCubicInterpolation(); };
   const auto masked = MakeVolume(extent);
   {
     const auto active = vtkSmartPointer<vtkUnsignedCharArray>::New();
@@ -316,7 +329,6 @@ inline std::vector<Case> MakeCases()
         set(filter);
         filter->SetReferenceData(reference);
         filter->SetBackgroundValue(7.0);
-        filter->AddCategoricalArray("label");
       };
     };
     const auto runs = deform(MakeMesh(volume, 4), Bend(volume));

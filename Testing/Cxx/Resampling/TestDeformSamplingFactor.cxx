@@ -186,6 +186,7 @@ TEST(DeformSamplingFactor, AgainstSubsampled)
     Case odd = cases[2];
     odd.Name = "Odd";
     odd.Volume = divisionCases::MakeVolume(GetExtent(odd.Volume));
+    AddOtherTypes(odd.Volume);
     vtkNew<vtkSOADataArrayTemplate<short>> vectors;
     vectors->SetName("vectors");
     vectors->SetNumberOfComponents(3);
@@ -276,7 +277,6 @@ public:
     SetDisplacements(this->Mesh, Shift(0.5, 0.0, 0.25));
     this->Tested.Filter->SetResamplerToExact();
     this->Tested.Filter->SetOutputBoundsModeToVolumeBounds();
-    this->Tested.Filter->AddCategoricalArray("label");
   }
 
   void Run()
