@@ -74,19 +74,31 @@ vtkSmartPointer<vtkImageData> MakeReference(bool isMirrored)
   return reference;
 }
 
-TEST(CInterface, Meshes)
+TEST(CInterface, Types)
 {
   const auto volume = MakeManyArrays();
+  auto mesh = MakeMesh(volume, 4);
+  SetDisplacements(mesh, Bend);
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetBackgroundValue(-7.4);
+  deformed.Filter->AddCategoricalArray("labels");
+  InC inC;
+  inC.SetVolume(volume, -7.4, { "labels" });
+  inC.SetMesh(mesh);
+  inC.Compare(deformed);
+}
+
+TEST(CInterface, Meshes)
+{
+  const auto volume = MakeTwoArrays();
   for (const bool isIrregular : { false, true })
   {
     // The irregular mesh ends inside the volume.
     auto mesh = isIrregular ? MakeIrregularMesh(volume, -2.0) : MakeMesh(volume, 4);
     SetDisplacements(mesh, Bend);
     Deformed deformed(volume, mesh);
-    deformed.Filter->SetBackgroundValue(-7.4);
-    deformed.Filter->AddCategoricalArray("labels");
     InC inC;
-    inC.SetVolume(volume, -7.4, { "labels" });
+    inC.SetVolume(volume, 0.0);
     inC.SetMesh(mesh);
     inC.Compare(deformed);
     deformed.Filter->SetInterpolation(vtkDeformVolumeFilter::CUBIC_INTERPOLATION);
@@ -281,13 +293,13 @@ TEST(CInterface, ExtraAndMasks)
   inC.Compare(deformed);
 }
 
-// Densities, which are divided by the Jacobian: of all types, with meshes, fields and folds.
-TEST(CInterface, Densities)
+// Densities, which are divided by the Jacobian, of several types.
+TEST(CInterface, TypesOfDensities)
 {
   const auto volume = MakeManyArrays();
   // Labels and one other array are not densities.
   const std::set<std::string> densities{ "int8", "uint16", "int64", "double", "vectors" };
-  auto mesh = MakeIrregularMesh(volume, 1.0);
+  auto mesh = MakeMesh(volume, 4);
   SetDisplacements(mesh, Bend);
   Deformed deformed(volume, mesh);
   deformed.Filter->SetBackgroundValue(-2.6);
@@ -301,6 +313,22 @@ TEST(CInterface, Densities)
   inC.SetMesh(mesh);
   inC.Compare(deformed);
   EXPECT_EQ(deformed.Update()->GetPointData()->GetArray("uint16")->GetDataType(), VTK_FLOAT);
+}
+
+// Densities with meshes, fields and folds.
+TEST(CInterface, Densities)
+{
+  const auto volume = MakeTwoArrays();
+  auto mesh = MakeIrregularMesh(volume, 1.0);
+  SetDisplacements(mesh, Bend);
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetBackgroundValue(-2.6);
+  deformed.Filter->AddDensityArray("int16");
+  InC inC;
+  inC.Densities = { "int16" };
+  inC.SetVolume(volume, -2.6);
+  inC.SetMesh(mesh);
+  inC.Compare(deformed);
   // Request the Jacobian. The second call has no changes.
   deformed.Filter->GenerateJacobianOn();
   deformed.Filter->GenerateRestPositionsOn();
