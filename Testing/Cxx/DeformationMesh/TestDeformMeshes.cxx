@@ -735,11 +735,14 @@ TEST(DeformMeshes, Directions)
   const Grid mesh = MakeBentMesh(volume);
   const vtkIdType count = volume->GetNumberOfPoints();
   vtkPointData* arrays = volume->GetPointData();
-  arrays->AddArray(MakeConstant("color", 3, count));
+  arrays->AddArray(MakeConstant("fibre", 3, count));
+  arrays->AddArray(MakeConstant("gradient", 3, count));
+  arrays->AddArray(MakeConstant("diffusion", 9, count));
   Deformed deformed(volume, mesh);
   deformed.Filter->Update();
   EXPECT_EQ(deformed.TakeWarning(), "");
-  arrays->SetVectors(MakeConstant("fibre", 3, count));
+  arrays->SetActiveVectors("fibre");
+  volume->Modified();
   deformed.Filter->Update();
   const std::string first = deformed.TakeWarning();
   EXPECT_TRUE(HasPart(first, "active vectors \"fibre\""));
@@ -747,8 +750,8 @@ TEST(DeformMeshes, Directions)
   deformed.Filter->Modified();
   deformed.Filter->Update();
   EXPECT_EQ(deformed.TakeWarning(), "");
-  arrays->SetNormals(MakeConstant("gradient", 3, count));
-  arrays->SetTensors(MakeConstant("diffusion", 9, count));
+  arrays->SetActiveNormals("gradient");
+  arrays->SetActiveTensors("diffusion");
   volume->Modified();
   deformed.Filter->Update();
   const std::string second = deformed.TakeWarning();

@@ -79,17 +79,17 @@ vtkSmartPointer<vtkUnstructuredGrid> Hollow(
   return mesh;
 }
 
-// A volume with a float and a short array whose values vary in all directions.
+// A volume with a short and a float array whose values vary in all directions.
 vtkSmartPointer<vtkImageData> MakeTissue(
   const Extent& extent, const glm::dvec3& spacing = glm::dvec3(1.0))
 {
   auto volume = MakeImage(extent, spacing);
-  AddScalars<float>(volume, "more",
-    [](const glm::dvec3& p)
-    { return std::sin(1.3 * p.x + p.y) * p.z + 5.0 * std::cos(p.x * p.y); });
   AddScalars<short>(volume, "value",
     [](const glm::dvec3& p)
     { return 400.0 * std::sin(0.7 * p.x) + 300.0 * std::cos(0.9 * p.y + 0.2 * p.z); });
+  AddScalars<float>(volume, "more",
+    [](const glm::dvec3& p)
+    { return std::sin(1.3 * p.x + p.y) * p.z + 5.0 * std::cos(p.x * p.y); });
   return volume;
 }
 
@@ -173,9 +173,9 @@ TEST(DeformKeep, MovedBox)
 {
   const glm::dvec3 spacing(0.8, 1.25, 2.0);
   const auto volume = MakeImage({ { 0, 80, 0, 40, 0, 30 } }, spacing);
-  AddScalars<double>(volume, "x", [](const glm::dvec3& p) { return p.x; });
-  AddScalars<float>(volume, "value",
-    [](const glm::dvec3& p) { return std::sin(1.3 * p.x + p.y) * p.z + 7.0 * p.x; });
+  AddScalars<short>(volume, "value",
+    [](const glm::dvec3& p) { return 10.0 * std::sin(1.3 * p.x + p.y) * p.z + 70.0 * p.x; });
+  AddScalars<float>(volume, "x", [](const glm::dvec3& p) { return p.x; });
   const glm::dvec3 min(24.1, 16.3, 22.6);
   const glm::dvec3 max(38.9, 30.2, 39.3);
   const auto mesh = MakeBox(min, max);

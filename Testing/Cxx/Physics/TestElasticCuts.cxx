@@ -62,7 +62,7 @@ void CheckCut(const std::function<void(Simulated<Filter>&)>& settle)
   vtkNew<vtkImageData> volume;
   volume->SetDimensions(41, 41, 121);
   volume->SetSpacing(0.25, 0.25, 0.25);
-  volume->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  volume->AllocateScalars(VTK_SHORT, 1);
   volume->GetPointData()->GetScalars()->Fill(100.0);
   vtkNew<vtkDeformVolumeFilter> deform;
   deform->SetInputData(volume);

@@ -652,7 +652,7 @@ TEST(ElasticDeformation, DeformedVolume)
 
   vtkNew<vtkImageData> volume;
   volume->SetDimensions(11, 11, 31);
-  volume->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  volume->AllocateScalars(VTK_SHORT, 1);
   volume->GetPointData()->GetScalars()->Fill(100.0);
   vtkNew<vtkDeformVolumeFilter> deform;
   deform->SetInputData(volume);

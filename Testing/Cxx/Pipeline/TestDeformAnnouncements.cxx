@@ -356,11 +356,11 @@ void CheckAnnounced(vtkImageAlgorithm* filter)
   {
     deform->SetDeformationData(mesh);
   }
-  for (const int type : { VTK_SHORT, VTK_DOUBLE })
+  for (const int type : { VTK_SHORT, VTK_FLOAT })
   {
-    if (type == VTK_DOUBLE)
+    if (type == VTK_FLOAT)
     {
-      AddScalars<double>(volume, "value", [](const glm::dvec3& p) { return p.y; });
+      AddScalars<float>(volume, "value", [](const glm::dvec3& p) { return p.y; });
     }
     filter->UpdateInformation();
     vtkInformation* announced = filter->GetOutputInformation(0);

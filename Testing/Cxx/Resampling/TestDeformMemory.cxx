@@ -149,7 +149,7 @@ TEST_F(DeformMemory, DescriptionOfArrays)
   EXPECT_EQ(subject.Filtered.GetValues()->GetLookupTable(), table);
   subject.Volume->GetPointData()->SetScalars(nullptr);
   subject.Volume->GetPointData()->RemoveArray("other");
-  AddScalars<double>(subject.Volume, "third", [](const glm::dvec3& p) { return p.x - p.z; });
+  AddScalars<float>(subject.Volume, "third", [](const glm::dvec3& p) { return p.x - p.z; });
   EXPECT_TRUE(AreEqual(subject.Filtered.Update(), subject.GetFresh()));
   EXPECT_EQ(std::string(subject.Filtered.GetValues()->GetName()), std::string("third"));
   EXPECT_EQ(subject.Filtered.GetValues()->GetComponentName(0), nullptr);

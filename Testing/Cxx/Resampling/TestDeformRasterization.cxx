@@ -130,9 +130,9 @@ TEST_F(DeformRasterization, AffineMap)
 {
   auto volume = MakeImage(Box, glm::dvec3(0.8, 1.1, -1.3), glm::dvec3(5.0, 6.0, 7.0));
   const auto function = [](const glm::dvec3& p) { return 3.0 * p.x - 2.0 * p.y + 0.5 * p.z; };
-  AddScalars<unsigned short>(volume, "integer",
+  AddScalars<short>(volume, "integer",
     [&](const glm::dvec3& p) { return std::round(20.0 * function(p) + 2000.0); });
-  AddScalars<double>(volume, "value", function);
+  AddScalars<float>(volume, "value", function);
   auto mesh = MakeMesh(volume, 3, 1.0);
   const glm::dmat3 matrix(1.1, 0.2, -0.1, -0.3, 0.9, 0.15, 0.05, -0.2, 1.3);
   const glm::dvec3 offset(0.37, -1.2, 2.5);

@@ -43,7 +43,7 @@ vtkSmartPointer<vtkImageData> MakeOblique()
   auto volume =
     MakeImage({ { -7, 8, 3, 17, -20, -8 } }, glm::dvec3(0.7, 1.3, 1.1), glm::dvec3(4.0, -5.0, 2.5));
   SetObliqueDirection(volume);
-  AddScalars<double>(volume, "value", GetValue);
+  AddScalars<float>(volume, "value", GetValue);
   return volume;
 }
 
@@ -187,7 +187,7 @@ TEST(ReferenceImage, Rotated)
     auto even = MakeImage(
       { { -8, 8, 4, 18, -20, -8 } }, glm::dvec3(0.7, 1.3, 1.1), glm::dvec3(4.0, -5.0, 2.5));
     SetObliqueDirection(even);
-    AddScalars<double>(even, "value", GetValue);
+    AddScalars<float>(even, "value", GetValue);
     OnReference coarse(even, MakeMoved(even), reference);
     coarse.Filter->SetSamplingFactor(2);
     CheckValues(coarse, even, reference);
