@@ -287,6 +287,7 @@ TEST(ExtraArrays, Kept)
   const auto volume = MakeImage({ { 0, 49, 0, 39, 0, 35 } });
   AddScalars<float>(volume, "dose", [](const glm::dvec3&) { return 2.0; });
   AddScalars<double>(volume, "activity", [](const glm::dvec3& p) { return 5.0 + 0.1 * p.x; });
+  AddScalars<float>(volume, "linear", [](const glm::dvec3& p) { return p.y; });
   const auto mesh = MakeTetrahedra({ { 18.2, 29.7, 15.1, 24.4, 13.3, 22.8 } }, { { 4, 4, 4 } });
   SetDisplacements(mesh, Shift(2.5, 0.0, 0.0));
   const auto field =
@@ -493,7 +494,8 @@ TEST(ExtraArrays, Mirrored)
 // images contain a sample.
 TEST(ExtraArrays, FoldCounts)
 {
-  const auto volume = MakeDose({ { 0, 60, 0, 12, 0, 11 } });
+  auto volume = MakeVolume({ { 0, 60, 0, 12, 0, 11 } });
+  volume->SetOrigin(-7.0, 3.0, 11.0);
   const auto map = [](double x)
   {
     const double r = (x - 23.0) / 15.0;
