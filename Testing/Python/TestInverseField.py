@@ -302,7 +302,7 @@ away = field_grid.get_points() - middle
 forward = field_grid.make_image(b=away @ gradient.T)
 back = field_grid.make_image(b=away @ (np.linalg.inv(np.eye(3) + gradient) - np.eye(3)).T)
 slope = np.array([1.0, -2.0, 3.0])
-ramp = grid.make_image(ramp=grid.get_points() @ slope)
+ramp = grid.make_image(ramp=(grid.get_points() @ slope).astype(np.float32))
 results = []
 for data, inverse in ((forward, False), (back, True)):
     affine = make_filter(ramp, data, inverse)
@@ -334,8 +334,7 @@ mirrored.Update()
 assert mirrored.GetNumberOfInvertedTetrahedra() == 5 * np.prod(np.array(field_grid.size) - 1)
 
 # Hidden points have no value.
-hidden = vtkImageData()
-hidden.DeepCopy(volume)
+hidden = grid.make_image(single=arrays["single"])
 ghosts = np.zeros(shape, dtype=np.uint8)
 ghosts[8, 9, 10] = vtkDataSetAttributes.HIDDENPOINT
 made = numpy_to_vtk(ghosts.ravel(), deep=True)
@@ -365,8 +364,7 @@ def find_tetrahedra(index):
     return cell, found, clear
 
 
-switched = vtkImageData()
-switched.DeepCopy(volume)
+switched = grid.make_image(single=arrays["single"])
 active = random.integers(0, 32, size=[n - 1 for n in shape], dtype=np.uint8)
 made = numpy_to_vtk(active.ravel(), deep=True)
 made.SetName("ActiveTetrahedra")

@@ -22,7 +22,7 @@ def make_volume(origin=(0, 0, 0)):
     volume = vtkImageData()
     volume.SetDimensions(21, 21, 21)
     volume.SetOrigin(origin)
-    values = numpy_to_vtk(np.tile(np.arange(21.0), 441), deep=True)
+    values = numpy_to_vtk(np.tile(np.arange(21, dtype=np.float32), 441), deep=True)
     values.SetName("x")
     volume.GetPointData().SetScalars(values)
     return volume
