@@ -144,9 +144,9 @@ TEST_F(HostMemory, NothingBeyondTheEndIsAccessed)
     const DeformerCase small =
       MakeCase({ { 0, size, 0, 2, 0, 2 } }, { { 1, 1, 1 } }, MakeJitter(size, 0.15));
     const auto voxels = static_cast<std::size_t>(small.GetNumberOfVoxels());
-    const auto bytes = MakeRandomValues<std::uint8_t>(voxels, size);
+    const auto shorts = MakeRandomValues<std::int16_t>(voxels, size);
     const auto floats = MakeRandomValues<float>(voxels, size);
-    std::vector<VolumeArray> arrays{ MakeArray(bytes), MakeArray(floats) };
+    std::vector<VolumeArray> arrays{ MakeArray(shorts), MakeArray(floats) };
     for (VolumeArray& array : arrays)
     {
       const auto memory = std::make_shared<GuardedMemory>(voxels * GetElementSize(array.Type));
@@ -160,7 +160,7 @@ TEST_F(HostMemory, NothingBeyondTheEndIsAccessed)
       Load(this->Deformer, small, arrays, route);
       const Deformed expected = RunDeformer(this->Deformer, small, arrays);
       ExpectEqualsReference(small, ResampleByReference(small), arrays, expected);
-      const GuardedMemory first(outputVoxels);
+      const GuardedMemory first(2 * outputVoxels);
       const GuardedMemory second(4 * outputVoxels);
       const GuardedMemory coverage(outputVoxels);
       DeformRequest request;
@@ -168,7 +168,7 @@ TEST_F(HostMemory, NothingBeyondTheEndIsAccessed)
       request.Outputs = std::vector<void*>{ first.Data, second.Data };
       request.Coverage = reinterpret_cast<signed char*>(coverage.Data);
       this->Deformer.Deform(request);
-      EXPECT_EQ(std::memcmp(first.Data, expected.Outputs[0].data(), outputVoxels), 0);
+      EXPECT_EQ(std::memcmp(first.Data, expected.Outputs[0].data(), 2 * outputVoxels), 0);
       EXPECT_EQ(std::memcmp(second.Data, expected.Outputs[1].data(), 4 * outputVoxels), 0);
     }
   }

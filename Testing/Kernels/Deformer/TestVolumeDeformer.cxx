@@ -30,7 +30,7 @@ void Check(const DeformerCase& tiny, Route route, bool embedding = true)
 void CheckUpdate(double move)
 {
   DeformerCase tiny = MakeCase({ { 0, 7, 0, 15, 0, 3 } }, NoScale, MakeJitter(8, 0.1), 3);
-  const auto values = MakeRandomValues<std::uint16_t>(tiny.GetNumberOfVoxels(), 2);
+  const auto values = MakeRandomValues<std::int16_t>(tiny.GetNumberOfVoxels(), 2);
   const std::vector<VolumeArray> arrays{ MakeArray(values) };
   const auto size = static_cast<std::size_t>(GetNumberOfPoints(tiny.Output));
   std::vector<char> output(2 * size + 1);

@@ -57,7 +57,8 @@ std::string Describe(const Deformed& deformed)
   return hash.Get() + " " + std::to_string(deformed.Report.NumberOfCoveredVoxels);
 }
 
-/// Values of different types for a volume of `size` voxels.
+/// Values of all types for a volume of `size` voxels, for one kind of mapping. Kernels of the
+/// others have the usual arrays.
 struct Values
 {
   explicit Values(std::size_t size)
@@ -115,13 +116,16 @@ void DeformByMesh(Results& results)
   {
     volume.Move(random, 20, 1.3F);
   }
-  const Values values(static_cast<std::size_t>(GetNumberOfPoints(volume.Shape.VertexExtent)));
+  const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(volume.Shape.VertexExtent));
+  const Values values(voxels);
+  const UsualArrays usual(voxels);
   for (const Route route : { Route::Mesh, Route::Runs })
   {
+    const std::vector<VolumeArray> arrays = route == Route::Mesh ? values.GetArrays() : usual.Get();
     VolumeDeformer deformer;
     deformer.SetDevice("");
     deformer.SetVoxelGrid(volume.Shape);
-    deformer.SetArrays(values.GetArrays());
+    deformer.SetArrays(arrays);
     if (route == Route::Mesh)
     {
       deformer.SetMesh(volume.Tetrahedra.data(), volume.Tetrahedra.size(),
@@ -133,8 +137,7 @@ void DeformByMesh(Results& results)
         volume.Tetrahedra.data(), volume.Tetrahedra.size(), volume.GetNumberOfNodes(), volume.Runs);
     }
     volume.SendDisplacements(deformer, route);
-    RunBoth(deformer, volume.Output, values.GetArrays(), route == Route::Mesh ? "links" : "runs",
-      results);
+    RunBoth(deformer, volume.Output, arrays, route == Route::Mesh ? "links" : "runs", results);
   }
 }
 
@@ -144,7 +147,7 @@ void DeformByField(Results& results)
   VoxelGrid voxelGrid;
   voxelGrid.VertexExtent = { { -3, 70, 2, 45, 0, 40 } };
   const Extent output{ { -8, 100, -5, 80, -5, 80 } };
-  const Values values(static_cast<std::size_t>(GetNumberOfPoints(voxelGrid.VertexExtent)));
+  const UsualArrays usual(static_cast<std::size_t>(GetNumberOfPoints(voxelGrid.VertexExtent)));
   for (const bool coarse : { true, false })
   {
     DisplacementField field;
@@ -183,9 +186,9 @@ void DeformByField(Results& results)
         VolumeDeformer deformer;
         deformer.SetDevice("");
         deformer.SetVoxelGrid(voxelGrid);
-        deformer.SetArrays(values.GetArrays());
+        deformer.SetArrays(usual.Get());
         deformer.SetDisplacementField(field);
-        RunBoth(deformer, output, values.GetArrays(),
+        RunBoth(deformer, output, usual.Get(),
           std::string(coarse ? "coarse" : "fine") + " field" + (turned ? ", turned" : "") +
             (owned ? ", in place" : ""),
           results);

@@ -68,7 +68,7 @@ struct Subject
     : Case(MakeCase(extent, scale,
         [&](const glm::dvec3& i) { return i * glm::dvec3(scale[0], scale[1], scale[2]); }))
     , Points(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()))
-    , Values(MakeRandomValues<std::uint16_t>(this->Points, 3))
+    , Values(MakeRandomValues<std::int16_t>(this->Points, 3))
     , Arrays{ MakeArray(this->Values) }
   {
   }
@@ -127,7 +127,7 @@ struct Subject
 
   DeformerCase Case;
   std::size_t Points;
-  std::vector<std::uint16_t> Values;
+  std::vector<std::int16_t> Values;
   std::vector<VolumeArray> Arrays;
 };
 

@@ -41,7 +41,7 @@ protected:
   std::size_t Points = static_cast<std::size_t>(this->Case.GetNumberOfVoxels());
   std::uint64_t Bytes = 12 * this->Points;
   std::vector<float> Displacements = this->Case.GetDisplacements();
-  std::vector<std::uint16_t> Values = MakeRandomValues<std::uint16_t>(this->Points, 3);
+  std::vector<std::int16_t> Values = MakeRandomValues<std::int16_t>(this->Points, 3);
   std::vector<VolumeArray> Arrays{ MakeArray(this->Values) };
 };
 
@@ -181,7 +181,7 @@ protected:
     VolumeDeformer other;
     this->Load(other);
     other.SetDisplacementField(this->Field, vectors);
-    std::vector<std::uint8_t> output(Voxels);
+    std::vector<std::int16_t> output(Voxels);
     std::vector<signed char> coverage(Voxels);
     DeformRequest request = this->Request;
     request.Incremental = false;
@@ -198,12 +198,12 @@ protected:
   static constexpr std::size_t Points = std::size_t{ Size } * Size * Size;
   static constexpr std::size_t Voxels = std::size_t{ Size } * Size * 22;
   VoxelGrid Grid;
-  std::vector<std::uint8_t> Values = MakeRandomValues<std::uint8_t>(Voxels, 5);
+  std::vector<std::int16_t> Values = MakeRandomValues<std::int16_t>(Voxels, 5);
   std::vector<float> Vectors = std::vector<float>(3 * Points);
   DisplacementField Field;
   VolumeDeformer Deformer;
   DeformRequest Request;
-  std::vector<std::uint8_t> Output = std::vector<std::uint8_t>(Voxels);
+  std::vector<std::int16_t> Output = std::vector<std::int16_t>(Voxels);
   std::vector<signed char> Coverage = std::vector<signed char>(Voxels);
 };
 

@@ -23,8 +23,8 @@ protected:
 
   DeformerCase Case = MakeCase({ { 0, 21, 0, 18, -1, 17 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
   reference::Result Reference = ResampleByReference(this->Case);
-  std::vector<std::uint16_t> Values =
-    MakeRandomValues<std::uint16_t>(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 3);
+  std::vector<std::int16_t> Values =
+    MakeRandomValues<std::int16_t>(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 3);
   std::vector<float> Others =
     MakeRandomValues<float>(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 4);
   std::vector<VolumeArray> Arrays{ MakeArray(this->Values), MakeArray(this->Others) };

@@ -19,8 +19,8 @@ protected:
   void SetUp() override { SKIP_UNLESS_GRAPHICS(); }
 
   DeformerCase Case = MakeCase({ { 0, 21, 0, 18, -1, 17 } }, { { 1, 1, 1 } }, MakeJitter(5, 0.15));
-  std::vector<std::uint16_t> Values =
-    MakeRandomValues<std::uint16_t>(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 3);
+  std::vector<std::int16_t> Values =
+    MakeRandomValues<std::int16_t>(static_cast<std::size_t>(this->Case.GetNumberOfVoxels()), 3);
   std::vector<VolumeArray> Arrays{ MakeArray(this->Values) };
   VolumeDeformer Deformer;
 
@@ -60,7 +60,7 @@ TEST_F(GraphicsDevice, WorkGroupSizesAreGiven)
   const DeformerCase folded =
     MakeCase({ { 0, 30, 0, 30, 0, 30 } }, { { 1, 1, 1 } }, MakeJitter(3, 1.0));
   const auto values =
-    MakeRandomValues<std::uint16_t>(static_cast<std::size_t>(folded.GetNumberOfVoxels()), 3);
+    MakeRandomValues<std::int16_t>(static_cast<std::size_t>(folded.GetNumberOfVoxels()), 3);
   const std::vector<VolumeArray> arrays{ MakeArray(values) };
   Load(this->Deformer, folded, arrays, Route::Mesh);
   const DeformReport report = RunDeformer(this->Deformer, folded, arrays).Report;

@@ -163,8 +163,8 @@ void ExpectLookedUp(const InverseCase& c, const std::vector<float>& values,
         integer = std::min(std::max(integer, -32768.0L), 32767.0L);
         // The bound is 1e-5 of the largest value, like for meshes. The largest values are 1,000 and
         // 2^15.
-        wrong += std::fabs(deformed.GetOutput<float>(0)[voxel] - value) <= 1e-2L ? 0 : 1;
-        wrong += std::fabs(deformed.GetOutput<std::int16_t>(1)[voxel] - integer) <= 0.83L ? 0 : 1;
+        wrong += std::fabs(deformed.GetOutput<float>(1)[voxel] - value) <= 1e-2L ? 0 : 1;
+        wrong += std::fabs(deformed.GetOutput<std::int16_t>(0)[voxel] - integer) <= 0.83L ? 0 : 1;
       }
     }
   }
@@ -179,7 +179,7 @@ void ExpectLookedUpInSlabs(InverseCase& c)
 {
   const auto values = MakeRandomValues<float>(GetNumberOfPoints(Volume), 1);
   const auto integers = MakeRandomValues<std::int16_t>(GetNumberOfPoints(Volume), 2);
-  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(integers) };
+  const std::vector<VolumeArray> arrays{ MakeArray(integers), MakeArray(values) };
   VolumeDeformer deformer;
   deformer.SetDevice("");
   const Deformed first = RunCase(deformer, c, arrays);
@@ -201,7 +201,7 @@ TEST(InverseField, MisuseIsAnError)
   InverseCase c = MakeCase(Volume, { { 5, 4, 6 } }, 0.002F);
   const auto values = MakeRandomValues<float>(GetNumberOfPoints(Volume), 1);
   const auto integers = MakeRandomValues<std::int16_t>(GetNumberOfPoints(Volume), 2);
-  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(integers) };
+  const std::vector<VolumeArray> arrays{ MakeArray(integers), MakeArray(values) };
   VolumeDeformer deformer;
   deformer.SetDevice("");
   deformer.SetVoxelGrid(c.VoxelGrid);
@@ -300,7 +300,7 @@ TEST(InverseField, VoxelsThatNeedUndefinedVectorsAreNotCovered)
     }
     const auto values = MakeRandomValues<float>(GetNumberOfPoints(Volume), 1);
     const auto integers = MakeRandomValues<std::int16_t>(GetNumberOfPoints(Volume), 2);
-    const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(integers) };
+    const std::vector<VolumeArray> arrays{ MakeArray(integers), MakeArray(values) };
     VolumeDeformer deformer;
     deformer.SetDevice("");
     ExpectLookedUp(c, values, integers, RunCase(deformer, c, arrays));
@@ -433,7 +433,7 @@ TEST(InverseField, TinyEqualsReference)
   c.Field.Extrapolate = true;
   const auto values = MakeRandomValues<float>(GetNumberOfPoints(volume), 1);
   const auto integers = MakeRandomValues<std::int16_t>(GetNumberOfPoints(volume), 2);
-  const std::vector<VolumeArray> arrays{ MakeArray(values), MakeArray(integers) };
+  const std::vector<VolumeArray> arrays{ MakeArray(integers), MakeArray(values) };
   VolumeDeformer deformer;
   deformer.SetDevice("");
   ExpectLookedUp(c, values, integers, RunCase(deformer, c, arrays));
