@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace deformvolume
 {
@@ -15,13 +16,33 @@ namespace
 // With fewer free nodes, block Jacobi is enough.
 constexpr std::ptrdiff_t LeastNumberForLevels = 300;
 
+// Whether single precision is too coarse for a hierarchy of a matrix: then softer parts are lost in
+// the rounding errors of stiffer ones.
+bool NeedsDoubles(const BlockMatrix& matrix, const std::vector<unsigned char>& isFree)
+{
+  // From 10^6 on, iterations with floats are several times as many.
+  constexpr double largestContrast = 1e5;
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0.0;
+  for (std::size_t row = 0; row < isFree.size(); ++row)
+  {
+    if (isFree[row] != 0)
+    {
+      const double* const block = matrix.GetDiagonal(row);
+      const double stiffness = block[0] + block[4] + block[8]; // the trace
+      least = std::min(least, stiffness);
+      most = std::max(most, stiffness);
+    }
+  }
+  return most > largestContrast * least;
+}
+
 } // namespace
 
 void TangentSolver::Forget()
 {
   this->IsFree.clear();
   this->IsPreconditioned = false;
-  this->DoLevelsFail = false;
   this->History.Clear();
 }
 
@@ -49,28 +70,39 @@ std::vector<glm::dvec3> TangentSolver::FindPositions() const
 Preconditioner& TangentSolver::Precondition(Watch& watch, const std::vector<unsigned char>& isFree)
 {
   const bool isNew = this->IsFree != isFree;
-  this->HasLevels =
-    !this->DoLevelsFail && std::count(isFree.begin(), isFree.end(), 1) >= LeastNumberForLevels;
-  if (this->HasLevels && isNew)
+  this->HasLevels = std::count(isFree.begin(), isFree.end(), 1) >= LeastNumberForLevels;
+  const bool isCurrent = !isNew && this->IsPreconditioned;
+  this->IsFree = isFree;
+  this->IsPreconditioned = true;
+  if (!this->HasLevels)
   {
-    this->Levels.Build(watch, this->Matrix, isFree, this->FindPositions());
-    this->CostOfLevels = 0.0;
-    this->AreLevelsNew = true;
-  }
-  if (isNew || !this->IsPreconditioned)
-  {
-    if (this->HasLevels)
-    {
-      this->Levels.SetPositions(watch, this->Matrix.GetPattern(), this->FindPositions());
-    }
-    else
+    if (!isCurrent)
     {
       this->Jacobi.Build(watch, this->Matrix, isFree);
     }
+    return this->Jacobi;
   }
-  this->IsFree = isFree;
-  this->IsPreconditioned = true;
-  return this->HasLevels ? static_cast<Preconditioner&>(this->Levels) : this->Jacobi;
+  if (isNew)
+  {
+    this->AreDoubles = NeedsDoubles(this->Matrix, isFree);
+    this->Levels = Multigrid<float>();
+    this->LevelsOfDoubles = Multigrid<double>();
+    this->CostOfLevels = 0.0;
+    this->AreLevelsNew = true;
+  }
+  const auto prepare = [&](auto& levels) -> Preconditioner&
+  {
+    if (isNew)
+    {
+      levels.Build(watch, this->Matrix, isFree, this->FindPositions());
+    }
+    if (!isCurrent)
+    {
+      levels.SetPositions(watch, this->Matrix.GetPattern(), this->FindPositions());
+    }
+    return levels;
+  };
+  return this->AreDoubles ? prepare(this->LevelsOfDoubles) : prepare(this->Levels);
 }
 
 void TangentSolver::JudgeLevels(int iterations, double digits)
@@ -116,20 +148,8 @@ ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
     this->Residual = rightHandSide;
     begin = squared;
   }
-  ConjugateGradients::Result result = this->Gradients.Solve(watch, this->Matrix, isFree,
+  const ConjugateGradients::Result result = this->Gradients.Solve(watch, this->Matrix, isFree,
     preconditioner, { limits.Iterations, wanted }, solution, this->Residual);
-  if (result.IsPreconditionerIndefinite && this->HasLevels)
-  {
-    // The hierarchy was built from a matrix that is too different, or its single precision is not
-    // enough for stiffnesses that differ by more than about 10^7.
-    this->Jacobi.Build(watch, this->Matrix, isFree);
-    const int iterations = result.Iterations;
-    result = this->Gradients.Solve(watch, this->Matrix, isFree, this->Jacobi,
-      { limits.Iterations - iterations, wanted }, solution, this->Residual);
-    result.Iterations += iterations;
-    this->DoLevelsFail = this->AreLevelsNew && !result.IsIndefinite;
-    this->IsFree.clear();
-  }
   this->Sliding.Project(solution);
   if (result.IsIndefinite)
   {

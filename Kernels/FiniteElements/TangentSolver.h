@@ -74,7 +74,9 @@ private:
   // The displacements for which Matrix was assembled.
   std::vector<glm::dvec3> Shape;
   BlockJacobi Jacobi;
-  Multigrid Levels;
+  Multigrid<float> Levels;
+  Multigrid<double> LevelsOfDoubles; // instead, for stiffnesses that are too different for floats
+  bool AreDoubles = false;
   // The free nodes of the preconditioner; empty: it must be built.
   std::vector<unsigned char> IsFree;
   // Iterations per decimal digit when the hierarchy was new.
@@ -85,8 +87,6 @@ private:
   bool AreLevelsNew = false;
   // Whether the preconditioner is the multigrid hierarchy.
   bool HasLevels = false;
-  // Whether the hierarchy of a positive definite matrix was not positive definite.
-  bool DoLevelsFail = false;
   ConjugateGradients Gradients;
   std::vector<glm::dvec3> Residual;
   SolutionHistory History;

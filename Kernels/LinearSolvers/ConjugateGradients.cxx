@@ -28,7 +28,7 @@ ConjugateGradients::Result ConjugateGradients::Solve(Watch& watch, const BlockMa
     const double product = SumOfProducts(watch, residual, this->Preconditioned);
     if (!(product > 0.0))
     {
-      result.IsPreconditionerIndefinite = true;
+      result.IsIndefinite = true;
       break;
     }
     const double ratio = iteration == 0 ? 0.0 : product / last;

@@ -28,12 +28,9 @@ public:
   struct Result
   {
     int Iterations = 0;
-    ///@{
-    /// Whether the matrix, or the preconditioner, turned out not to be positive definite. The
-    /// solution and the residual are then those of the previous iteration.
+    /// Whether the matrix or the preconditioner turned out not to be positive definite. The
+    /// solution is then that of the previous iteration.
     bool IsIndefinite = false;
-    bool IsPreconditionerIndefinite = false;
-    ///@}
   };
 
   /// Improves a solution. residual: of the given solution, 0 at nodes that are not free; updated.

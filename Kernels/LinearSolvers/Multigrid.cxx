@@ -75,55 +75,55 @@ NearNullSpace<3> MakeRigidModes(
   return modes;
 }
 
-template <int Size>
-std::vector<float> MakeSmoother(
+template <typename Real, int Size>
+std::vector<Real> MakeSmoother(
   Watch& watch, const std::vector<Eigen::Matrix<double, Size, Size>>& inverses, double damping)
 {
   constexpr std::size_t size = Size * Size;
   // Padding: the last column is read with as many values as there are lanes.
-  std::vector<float> result(inverses.size() * size + PaddedSize<Size>, 0.0f);
+  std::vector<Real> result(inverses.size() * size + PaddedSize<Size>, Real(0));
   ForItemsInParallel(watch, inverses.size(),
     [&](std::size_t row)
     {
       for (std::size_t i = 0; i < size; ++i)
       {
-        result[row * size + i] = static_cast<float>(damping * inverses[row].data()[i]);
+        result[row * size + i] = static_cast<Real>(damping * inverses[row].data()[i]);
       }
     });
   return result;
 }
 
 // Sets up a level for a matrix, and returns the next coarser one.
-template <int Size>
+template <typename Real, int Size>
 Coarsening<Size> MakeLevel(Watch& watch, const SparseBlocks<Size, Size>& matrix,
-  const NearNullSpace<Size>& modes, MultigridLevel<Size>& level)
+  const NearNullSpace<Size>& modes, MultigridLevel<Real, Size>& level)
 {
   const auto inverses = InvertDiagonal(watch, matrix);
   const double largest = FindLargestEigenvalue(watch, matrix, inverses);
   Coarsening<Size> coarsening = Coarsen(watch, matrix, inverses, largest, modes);
-  level.Matrix = FloatBlocks<Size, Size>(watch, matrix);
-  level.Smoother = MakeSmoother(watch, inverses, 4.0 / (3.0 * largest));
-  level.Prolongation = FloatBlocks<Size, 6>(watch, coarsening.Prolongation);
-  level.Restriction = FloatBlocks<6, Size>(watch, Transpose(watch, coarsening.Prolongation));
+  level.Matrix = PaddedBlocks<Real, Size, Size>(watch, matrix);
+  level.Smoother = MakeSmoother<Real>(watch, inverses, 4.0 / (3.0 * largest));
+  level.Prolongation = PaddedBlocks<Real, Size, 6>(watch, coarsening.Prolongation);
+  level.Restriction = PaddedBlocks<Real, 6, Size>(watch, Transpose(watch, coarsening.Prolongation));
   const std::size_t length = inverses.size() * PaddedSize<Size>;
-  level.Right.assign(length, 0.0f);
-  level.Solution.assign(length, 0.0f);
-  level.Work.assign(length, 0.0f);
+  level.Right.assign(length, Real(0));
+  level.Solution.assign(length, Real(0));
+  level.Work.assign(length, Real(0));
   return coarsening;
 }
 
 // One smoothing step that starts from 0.
-template <int Size>
-void ApplySmoother(MultigridLevel<Size>& level, std::size_t begin, std::size_t end)
+template <typename Real, int Size>
+void ApplySmoother(MultigridLevel<Real, Size>& level, std::size_t begin, std::size_t end)
 {
   for (std::size_t row = begin; row < end; ++row)
   {
-    const float* const right = &level.Right[row * PaddedSize<Size>];
-    float* const solution = &level.Solution[row * PaddedSize<Size>];
-    const float* const smoother = &level.Smoother[row * (Size * Size)];
+    const Real* const right = &level.Right[row * PaddedSize<Size>];
+    Real* const solution = &level.Solution[row * PaddedSize<Size>];
+    const Real* const smoother = &level.Smoother[row * (Size * Size)];
     for (int i = 0; i < Size; ++i)
     {
-      float sum = 0.0f;
+      Real sum = Real(0);
       for (int j = 0; j < Size; ++j)
       {
         sum += smoother[j * Size + i] * right[j];
@@ -134,8 +134,8 @@ void ApplySmoother(MultigridLevel<Size>& level, std::size_t begin, std::size_t e
 }
 
 // Pre-smoothing, and the residual.
-template <int Size>
-void SmoothFirst(Watch& watch, MultigridLevel<Size>& level)
+template <typename Real, int Size>
+void SmoothFirst(Watch& watch, MultigridLevel<Real, Size>& level)
 {
   const std::size_t rows = level.Matrix.GetNumberOfRows();
   ForRows(
@@ -149,8 +149,8 @@ void SmoothFirst(Watch& watch, MultigridLevel<Size>& level)
 }
 
 // Adds the correction of the coarser level, then post-smoothing.
-template <int Size>
-void SmoothLast(Watch& watch, MultigridLevel<Size>& level, const std::vector<float>& coarse)
+template <typename Real, int Size>
+void SmoothLast(Watch& watch, MultigridLevel<Real, Size>& level, const std::vector<Real>& coarse)
 {
   const std::size_t rows = level.Matrix.GetNumberOfRows();
   ForRows(watch, rows,
@@ -166,14 +166,14 @@ void SmoothLast(Watch& watch, MultigridLevel<Size>& level, const std::vector<flo
 }
 
 // Restricts the residual to the right-hand side of the coarser level.
-template <int Size>
-void Restrict(Watch& watch, const MultigridLevel<Size>& level, std::vector<float>& coarse)
+template <typename Real, int Size>
+void Restrict(Watch& watch, const MultigridLevel<Real, Size>& level, std::vector<Real>& coarse)
 {
   ForRows(watch, level.Restriction.GetNumberOfRows(),
     [&](std::size_t begin, std::size_t end)
     {
       std::fill(coarse.begin() + static_cast<std::ptrdiff_t>(begin * PaddedSize<6>),
-        coarse.begin() + static_cast<std::ptrdiff_t>(end * PaddedSize<6>), 0.0f);
+        coarse.begin() + static_cast<std::ptrdiff_t>(end * PaddedSize<6>), Real(0));
       level.Restriction.Add(begin, end, level.Work.data(), coarse.data());
     });
 }
@@ -203,7 +203,8 @@ bool Factorize(Watch& watch, Eigen::MatrixXd& matrix)
 }
 
 // Returns the inverse of a matrix, by rows; empty if the matrix is not positive definite.
-std::vector<float> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
+template <typename Real>
+std::vector<Real> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
 {
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(matrix.GetNumberOfRows());
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
@@ -218,7 +219,7 @@ std::vector<float> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
   {
     return {};
   }
-  std::vector<float> result(static_cast<std::size_t>(size * size));
+  std::vector<Real> result(static_cast<std::size_t>(size * size));
   for (Eigen::Index begin = 0; begin < size; begin += ColumnsAtOnce)
   {
     watch.Ask();
@@ -228,7 +229,7 @@ std::vector<float> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
     dense.triangularView<Eigen::Lower>().transpose().solveInPlace(inverse);
     for (Eigen::Index i = 0; i < size * columns; ++i)
     {
-      result[static_cast<std::size_t>(size * begin + i)] = static_cast<float>(inverse.data()[i]);
+      result[static_cast<std::size_t>(size * begin + i)] = static_cast<Real>(inverse.data()[i]);
     }
   }
   return result;
@@ -236,7 +237,8 @@ std::vector<float> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
 
 } // namespace
 
-void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
+template <typename Real>
+void Multigrid<Real>::Build(Watch& watch, const BlockMatrix& matrix,
   const std::vector<unsigned char>& isFree, const std::vector<glm::dvec3>& positions)
 {
   this->FreeNodes.clear();
@@ -266,31 +268,33 @@ void Multigrid::Build(Watch& watch, const BlockMatrix& matrix,
     coarse = std::move(next.Matrix);
     modes = std::move(next.Modes);
   }
-  this->Inverse =
-    coarse.GetNumberOfRows() <= CoarsestAggregates ? Invert(watch, coarse) : std::vector<float>();
+  this->Inverse = coarse.GetNumberOfRows() <= CoarsestAggregates ? Invert<Real>(watch, coarse)
+                                                                 : std::vector<Real>();
   // The coarsest level needs only its vectors.
   this->Coarse.emplace_back();
   const std::size_t length = static_cast<std::size_t>(coarse.GetNumberOfRows()) * PaddedSize<6>;
   if (this->Inverse.empty())
   {
-    this->Coarse.back().Smoother = MakeSmoother(watch, InvertDiagonal(watch, coarse), 1.0);
+    this->Coarse.back().Smoother = MakeSmoother<Real>(watch, InvertDiagonal(watch, coarse), 1.0);
   }
-  this->Coarse.back().Right.assign(length, 0.0f);
-  this->Coarse.back().Solution.assign(length, 0.0f);
+  this->Coarse.back().Right.assign(length, Real(0));
+  this->Coarse.back().Solution.assign(length, Real(0));
 }
 
-void Multigrid::SetPositions(
+template <typename Real>
+void Multigrid<Real>::SetPositions(
   Watch& watch, const BlockPattern& pattern, const std::vector<glm::dvec3>& positions)
 {
   FindNodeRotations(watch, pattern, this->FreeNodes, this->Positions, positions, this->Rotations);
 }
 
-void Multigrid::SolveCoarsest(
-  Watch& watch, const std::vector<float>& right, std::vector<float>& solution)
+template <typename Real>
+void Multigrid<Real>::SolveCoarsest(
+  Watch& watch, const std::vector<Real>& right, std::vector<Real>& solution)
 {
   const std::size_t aggregates = right.size() / PaddedSize<6>;
   const std::size_t size = 6 * aggregates;
-  std::vector<float> packed(size);
+  std::vector<Real> packed(size);
   for (std::size_t i = 0; i < size; ++i)
   {
     packed[i] = right[i / 6 * PaddedSize<6> + i % 6];
@@ -300,9 +304,9 @@ void Multigrid::SolveCoarsest(
     {
       for (std::size_t i = part * 192; i < std::min(size, (part + 1) * 192); ++i)
       {
-        const float* const row = &this->Inverse[i * size];
+        const Real* const row = &this->Inverse[i * size];
         constexpr std::size_t lanes = 8;
-        float sums[lanes] = {};
+        Real sums[lanes] = {};
         std::size_t j = 0;
         for (; j + lanes <= size; j += lanes)
         {
@@ -311,12 +315,12 @@ void Multigrid::SolveCoarsest(
             sums[lane] += row[j + lane] * packed[j + lane];
           }
         }
-        float sum = 0.0f;
+        Real sum = Real(0);
         for (; j < size; ++j)
         {
           sum += row[j] * packed[j];
         }
-        for (const float value : sums)
+        for (const Real value : sums)
         {
           sum += value;
         }
@@ -325,9 +329,10 @@ void Multigrid::SolveCoarsest(
     });
 }
 
-void Multigrid::SolveCoarse(Watch& watch, std::size_t level)
+template <typename Real>
+void Multigrid<Real>::SolveCoarse(Watch& watch, std::size_t level)
 {
-  MultigridLevel<6>& coarse = this->Coarse[level];
+  MultigridLevel<Real, 6>& coarse = this->Coarse[level];
   if (level + 1 == this->Coarse.size())
   {
     if (this->Inverse.empty())
@@ -345,7 +350,8 @@ void Multigrid::SolveCoarse(Watch& watch, std::size_t level)
   SmoothLast(watch, coarse, this->Coarse[level + 1].Solution);
 }
 
-void Multigrid::Apply(
+template <typename Real>
+void Multigrid<Real>::Apply(
   Watch& watch, const std::vector<glm::dvec3>& vector, double size, std::vector<glm::dvec3>& result)
 {
   // Scale the vector: residuals become smaller than the smallest float.
@@ -358,13 +364,12 @@ void Multigrid::Apply(
       for (std::size_t row = begin; row < end; ++row)
       {
         // glm: v * M is the transposed matrix times the vector.
-        const glm::vec3 value =
-          glm::vec3(scale * vector[static_cast<std::size_t>(this->FreeNodes[row])]) *
-          this->Rotations[row];
-        float* const right = &this->Fine.Right[row * PaddedSize<3>];
-        right[0] = value.x;
-        right[1] = value.y;
-        right[2] = value.z;
+        const glm::dvec3 value =
+          scale * vector[static_cast<std::size_t>(this->FreeNodes[row])] * this->Rotations[row];
+        Real* const right = &this->Fine.Right[row * PaddedSize<3>];
+        right[0] = static_cast<Real>(value.x);
+        right[1] = static_cast<Real>(value.y);
+        right[2] = static_cast<Real>(value.z);
       }
     });
   SmoothFirst(watch, this->Fine);
@@ -376,11 +381,14 @@ void Multigrid::Apply(
     {
       for (std::size_t row = begin; row < end; ++row)
       {
-        const float* const solution = &this->Fine.Solution[row * PaddedSize<3>];
-        result[static_cast<std::size_t>(this->FreeNodes[row])] = size *
-          glm::dvec3(this->Rotations[row] * glm::vec3(solution[0], solution[1], solution[2]));
+        const Real* const solution = &this->Fine.Solution[row * PaddedSize<3>];
+        result[static_cast<std::size_t>(this->FreeNodes[row])] =
+          size * (this->Rotations[row] * glm::dvec3(solution[0], solution[1], solution[2]));
       }
     });
 }
+
+template class Multigrid<float>;
+template class Multigrid<double>;
 
 } // namespace deformvolume

@@ -3,7 +3,7 @@
 #define DeformVolumeMultigrid_h
 
 #include "BlockMatrix.h"
-#include "FloatBlocks.h"
+#include "PaddedBlocks.h"
 #include "Preconditioner.h"
 #include "Watch.h"
 
@@ -17,23 +17,27 @@
 namespace deformvolume
 {
 
-/// A level of the multigrid hierarchy in single precision.
-template <int Size>
+/// A level of a multigrid hierarchy.
+template <typename Real, int Size>
 struct MultigridLevel
 {
-  FloatBlocks<Size, Size> Matrix;
+  PaddedBlocks<Real, Size, Size> Matrix;
   /// Damped inverses of the diagonal blocks.
-  std::vector<float> Smoother;
-  FloatBlocks<Size, 6> Prolongation;
-  FloatBlocks<6, Size> Restriction;
-  std::vector<float> Right;
-  std::vector<float> Solution;
-  std::vector<float> Work;
+  std::vector<Real> Smoother;
+  PaddedBlocks<Real, Size, 6> Prolongation;
+  PaddedBlocks<Real, 6, Size> Restriction;
+  std::vector<Real> Right;
+  std::vector<Real> Solution;
+  std::vector<Real> Work;
 };
 
 /// One V-cycle of smoothed aggregation multigrid, with rigid-body modes as near null space. The
 /// hierarchy is built from one matrix and reused for later matrices of the same body. The stiffness
 /// around a node is assumed to rotate with the body (SetPositions).
+///
+/// Real: float or double. Single precision is faster, and is enough unless stiffnesses differ by
+/// more than about 10^5.
+template <typename Real>
 class Multigrid : public Preconditioner
 {
 public:
@@ -49,17 +53,17 @@ public:
 
 private:
   void SolveCoarse(Watch& watch, std::size_t level);
-  void SolveCoarsest(Watch& watch, const std::vector<float>& right, std::vector<float>& solution);
+  void SolveCoarsest(Watch& watch, const std::vector<Real>& right, std::vector<Real>& solution);
 
   std::vector<std::int32_t> FreeNodes;
   // The positions of the nodes at Build(), and the rotations of their neighborhoods since then.
   std::vector<glm::dvec3> Positions;
-  std::vector<glm::mat3> Rotations;
-  MultigridLevel<3> Fine;
-  std::vector<MultigridLevel<6>> Coarse;
+  std::vector<glm::dmat3> Rotations;
+  MultigridLevel<Real, 3> Fine;
+  std::vector<MultigridLevel<Real, 6>> Coarse;
   // The inverse of the coarsest matrix, by rows. Empty if the coarsest level uses only its inverse
   // diagonal blocks (Smoother).
-  std::vector<float> Inverse;
+  std::vector<Real> Inverse;
 };
 
 } // namespace deformvolume

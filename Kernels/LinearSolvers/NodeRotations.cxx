@@ -22,7 +22,7 @@ struct RotationArguments
   std::size_t End;
   const glm::dvec3* Before;
   const glm::dvec3* Now;
-  glm::mat3* Rotations;
+  glm::dmat3* Rotations;
 };
 
 DEFORMVOLUME_ALWAYS_INLINE void FindRotations(const RotationArguments& arguments)
@@ -71,11 +71,11 @@ DEFORMVOLUME_ALWAYS_INLINE void FindRotations(const RotationArguments& arguments
       const LaneVector column = Multiply(values.U, rows[j]);
       for (int lane = 0; lane < number; ++lane)
       {
-        float* const rotation =
+        double* const rotation =
           glm::value_ptr(arguments.Rotations[begin + static_cast<std::size_t>(lane)]);
-        rotation[3 * j] = static_cast<float>(column.X[lane]);
-        rotation[3 * j + 1] = static_cast<float>(column.Y[lane]);
-        rotation[3 * j + 2] = static_cast<float>(column.Z[lane]);
+        rotation[3 * j] = column.X[lane];
+        rotation[3 * j + 1] = column.Y[lane];
+        rotation[3 * j + 2] = column.Z[lane];
       }
     }
   }
@@ -85,7 +85,7 @@ DEFORMVOLUME_ALWAYS_INLINE void FindRotations(const RotationArguments& arguments
 
 void FindNodeRotations(Watch& watch, const BlockPattern& pattern,
   const std::vector<std::int32_t>& nodes, const std::vector<glm::dvec3>& before,
-  const std::vector<glm::dvec3>& now, std::vector<glm::mat3>& rotations)
+  const std::vector<glm::dvec3>& now, std::vector<glm::dmat3>& rotations)
 {
   rotations.resize(nodes.size());
   ForRows(watch, nodes.size(),

@@ -18,7 +18,7 @@ namespace deformvolume
 /// body: the best fit of the edges at the node.
 void FindNodeRotations(Watch& watch, const BlockPattern& pattern,
   const std::vector<std::int32_t>& nodes, const std::vector<glm::dvec3>& before,
-  const std::vector<glm::dvec3>& now, std::vector<glm::mat3>& rotations);
+  const std::vector<glm::dvec3>& now, std::vector<glm::dmat3>& rotations);
 
 } // namespace deformvolume
 
