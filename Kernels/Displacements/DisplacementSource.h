@@ -87,8 +87,8 @@ public:
   std::vector<Extent> UpdateBridges();
   /// Updates the data that depend on displacements and masks: the records of runs and the state of
   /// the vertices. bricks: bricks to resample, if the other bricks do not change
-  /// (DEFORMVOLUME_BRICK_BITS); null: all. Returns the launch that updates the records of runs; null
-  /// if they are current.
+  /// (DEFORMVOLUME_BRICK_BITS); null: all. Returns the launch that updates the records of runs;
+  /// null if they are current.
   cl::Event PrepareMapping(const std::vector<cl_uint>* bricks = nullptr);
   MappingForm GetMappingForm() const;
   /// Sets the arguments of the mapping, which are the first arguments of a kernel. Returns their

@@ -24,8 +24,8 @@ DEFORMVOLUME_EXPORT void CheckBoxes(const MeshAtRest& mesh, const ImageGeometry&
 /// Returns "" if it is not.
 DEFORMVOLUME_EXPORT std::string FindFaultOfSize(
   const ImageGeometry& field, const ImageGeometry& volume);
-/// Returns such a warning for a mesh at rest, or one if its first tetrahedron is more than ten times
-/// as long as the volume on each axis.
+/// Returns such a warning for a mesh at rest, or one if its first tetrahedron is more than ten
+/// times as long as the volume on each axis.
 DEFORMVOLUME_EXPORT std::string FindFaultOfSize(
   const MeshAtRest& mesh, const ImageGeometry& volume);
 

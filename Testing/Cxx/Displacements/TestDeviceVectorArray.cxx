@@ -271,7 +271,8 @@ void CheckFilter(bool byField)
     found.Filter->SetOutputBoundsMode(mode);
     EXPECT_TRUE(AreEqual(expected.Update(), found.Update()));
   }
-  // The same tuples of both arrays are changed: three times without a log, then four times with one.
+  // The same tuples of both arrays are changed: three times without a log, then four times with
+  // one.
   const bool ownMemory = deformvolume::GetDeviceAbilities("").OwnMemory;
   constexpr int firstLogged = 3;
   vtkNew<vtkArrayChanges> expectedLog;
