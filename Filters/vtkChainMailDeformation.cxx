@@ -40,8 +40,7 @@ std::string FindIdleHandles(const std::vector<deformvolume::ChainMailHandleRepor
   return first == handles.end() ? ""
                                 : std::to_string(std::count_if(first, handles.end(), isIdle)) +
       " handles hold no voxel that can move: their voxels are pinned, have no active tetrahedra, "
-      "or "
-      "belong to handles before them. The first of these handles is point " +
+      "or belong to handles before them. The first of these handles is point " +
       std::to_string(first - handles.begin()) + " on input port 1.";
 }
 

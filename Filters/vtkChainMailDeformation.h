@@ -51,10 +51,10 @@
  *
  * @par Errors:
  * Each error is reported by one vtkErrorMacro. The output is then empty, and the displacements are
- * kept. Errors are: a volume that is flat or has no valid spacing; arrays of another shape or type;
- * a label that has no material; limits that exclude a link at rest; handles with coordinates that
- * are not finite, outside the volume at rest or displaced too far; too little memory; and failures
- * of the device, after which the displacements are lost.
+ * kept. Errors are: composite data; a volume that is flat or has no valid spacing; arrays of
+ * another shape or type; a label that has no material; limits that exclude a link at rest; handles
+ * with coordinates that are not finite, outside the volume at rest or displaced too far; too little
+ * memory; and failures of the device, after which the displacements are lost.
  *
  * The volume takes 15 bytes per voxel on the device, in blocks of 8 x 8 x 8 voxels, and the output
  * takes 12 bytes per voxel. Under MPI each rank works on a whole volume.

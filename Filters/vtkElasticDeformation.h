@@ -75,14 +75,14 @@
  * Reading the mesh, copying a body of springs to the device and cutting are not interrupted.
  *
  * @par Errors:
- * Each error is reported by one vtkErrorMacro: no tetrahedra, or other three-dimensional cells;
- * flat tetrahedra, or tetrahedra of different orientations; coordinates and numbers that are not
- * finite; a Young modulus or a density of 0 or less, a Poisson ratio of less than 0 or of 0.495 and
- * more; arrays of another shape; nodes that are fixed and slide; prescribed displacements without
- * the array "Fixed", and second normals without first ones; a handle that holds no node; a sheet
- * that is an error in vtkCutVolume. The output is then empty, the simulated state is kept, and a
- * new sheet cuts in the next execution that succeeds. If memory or a device fails, the body
- * restarts from rest.
+ * Each error is reported by one vtkErrorMacro: composite data; no tetrahedra, or other
+ * three-dimensional cells; flat tetrahedra, tetrahedra of different orientations, and those that
+ * the mesh has twice; coordinates and numbers that are not finite; a Young modulus or a density of
+ * 0 or less, a Poisson ratio of less than 0 or of 0.495 and more; arrays of another shape; nodes
+ * that are fixed and slide; prescribed displacements without the array "Fixed", and second normals
+ * without first ones; a handle that holds no node; a sheet that is an error in vtkCutVolume. The
+ * output is then empty, the simulated state is kept, and a new sheet cuts in the next execution
+ * that succeeds. If memory or a device fails, the body restarts from rest.
  *
  * @sa vtkMassSpringDeformation vtkFiniteElementDeformation vtkDeformVolumeFilter
  */

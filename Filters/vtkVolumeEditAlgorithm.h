@@ -41,11 +41,11 @@
  * makes the missing ones.
  *
  * @par Errors:
- * A volume that is flat; an "ActiveTetrahedra" array of another type or size; a tool
- * position or a DisplacementScale that is not finite; a deformation that is an error in
- * vtkDeformVolumeFilter, or that stretches 8 cells over more than 2,048 voxels at an edit. Each
- * error is reported by one vtkErrorMacro. The output is then empty, the edits do not change, and
- * the filter works again after the cause is corrected.
+ * A composite volume, sheet or surface; a volume that is flat; an "ActiveTetrahedra" array of
+ * another type or size; a tool position or a DisplacementScale that is not finite; a deformation
+ * that is an error in vtkDeformVolumeFilter, or that stretches 8 cells over more than 2,048 voxels
+ * at an edit. Each error is reported by one vtkErrorMacro. The output is then empty, the edits do
+ * not change, and the filter works again after the cause is corrected.
  *
  * @sa vtkCutVolume vtkCarveVolume vtkDeformVolumeFilter
  */
