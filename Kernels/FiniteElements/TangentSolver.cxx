@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 namespace deformvolume
 {
@@ -16,26 +15,8 @@ namespace
 // With fewer free nodes, block Jacobi is enough.
 constexpr std::ptrdiff_t LeastNumberForLevels = 300;
 
-// Whether single precision is too coarse for a hierarchy of a matrix: then softer parts are lost in
-// the rounding errors of stiffer ones.
-bool NeedsDoubles(const BlockMatrix& matrix, const std::vector<unsigned char>& isFree)
-{
-  // From 10^6 on, iterations with floats are several times as many.
-  constexpr double largestContrast = 1e5;
-  double least = std::numeric_limits<double>::infinity();
-  double most = 0.0;
-  for (std::size_t row = 0; row < isFree.size(); ++row)
-  {
-    if (isFree[row] != 0)
-    {
-      const double* const block = matrix.GetDiagonal(row);
-      const double stiffness = block[0] + block[4] + block[8]; // the trace
-      least = std::min(least, stiffness);
-      most = std::max(most, stiffness);
-    }
-  }
-  return most > largestContrast * least;
-}
+// After more iterations, a hierarchy of doubles is faster.
+constexpr int MostIterationsWithFloats = 300;
 
 } // namespace
 
@@ -43,6 +24,7 @@ void TangentSolver::Forget()
 {
   this->IsFree.clear();
   this->IsPreconditioned = false;
+  this->AreDoubles = false;
   this->History.Clear();
 }
 
@@ -51,6 +33,7 @@ void TangentSolver::Update(
 {
   this->IsPreconditioned = false;
   this->AreLevelsNew = false;
+  this->IsClamped = isClamped;
   this->History.ForgetProducts();
   this->Elements.AssembleTangent(watch, displacements, isClamped, this->Matrix);
   this->Sliding.Constrain(this->Matrix);
@@ -84,7 +67,6 @@ Preconditioner& TangentSolver::Precondition(Watch& watch, const std::vector<unsi
   }
   if (isNew)
   {
-    this->AreDoubles = NeedsDoubles(this->Matrix, isFree);
     this->Levels = Multigrid<float>();
     this->LevelsOfDoubles = Multigrid<double>();
     this->CostOfLevels = 0.0;
@@ -135,7 +117,6 @@ ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
   {
     this->History.Clear(); // stored solutions are for other free nodes
   }
-  Preconditioner& preconditioner = this->Precondition(watch, isFree);
   double begin = squared;
   if (usesHistory)
   {
@@ -148,8 +129,27 @@ ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
     this->Residual = rightHandSide;
     begin = squared;
   }
-  const ConjugateGradients::Result result = this->Gradients.Solve(watch, this->Matrix, isFree,
-    preconditioner, { limits.Iterations, wanted }, solution, this->Residual);
+  ConjugateGradients::Result result;
+  for (bool isSolved = false; !isSolved;)
+  {
+    Preconditioner& preconditioner = this->Precondition(watch, isFree);
+    const bool areFloats = this->HasLevels && !this->AreDoubles;
+    const int left = limits.Iterations - result.Iterations;
+    const int most = areFloats ? std::min(left, MostIterationsWithFloats) : left;
+    const ConjugateGradients::Result part = this->Gradients.Solve(
+      watch, this->Matrix, isFree, preconditioner, { most, wanted }, solution, this->Residual);
+    const bool isSlow = part.Iterations == most && most < left &&
+      SumOfProducts(watch, this->Residual, this->Residual) > wanted;
+    result = { result.Iterations + part.Iterations, part.IsIndefinite };
+    isSolved = !areFloats || !(isSlow || (part.IsIndefinite && this->IsClamped));
+    if (!isSolved)
+    {
+      // The hierarchy belongs to another shape. If not, single precision is not enough: for slender
+      // bodies, and if stiffnesses differ by more than 10^6.
+      this->AreDoubles = this->AreLevelsNew;
+      this->IsFree.clear();
+    }
+  }
   this->Sliding.Project(solution);
   if (result.IsIndefinite)
   {

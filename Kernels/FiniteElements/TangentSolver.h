@@ -75,12 +75,15 @@ private:
   std::vector<glm::dvec3> Shape;
   BlockJacobi Jacobi;
   Multigrid<float> Levels;
-  Multigrid<double> LevelsOfDoubles; // instead, for stiffnesses that are too different for floats
+  // Used instead of Levels after floats have turned out not to be enough.
+  Multigrid<double> LevelsOfDoubles;
   bool AreDoubles = false;
   // The free nodes of the preconditioner; empty: it must be built.
   std::vector<unsigned char> IsFree;
   // Iterations per decimal digit when the hierarchy was new.
   double CostOfLevels = 0.0;
+  // Whether the current matrix has no negative eigenvalues.
+  bool IsClamped = false;
   // Whether the preconditioner was updated for the current matrix.
   bool IsPreconditioned = false;
   // Whether the hierarchy was built from the current matrix.

@@ -35,8 +35,8 @@ struct MultigridLevel
 /// hierarchy is built from one matrix and reused for later matrices of the same body. The stiffness
 /// around a node is assumed to rotate with the body (SetPositions).
 ///
-/// Real: float or double. Single precision is faster, and is enough unless stiffnesses differ by
-/// more than about 10^5.
+/// Real: float or double. Floats are faster, but not enough for slender bodies, and if stiffnesses
+/// differ by more than about 10^6.
 template <typename Real>
 class Multigrid : public Preconditioner
 {

@@ -410,6 +410,28 @@ TEST(FiniteElementBeams, StiffRod)
     GetLoadedMean(request.Loads.Forces, model.GetDisplacements()).x / byTheory, 1.0, 0.01);
 }
 
+// A rod that is 200 times as long as thick needs multigrid in double precision.
+TEST(FiniteElementBeams, SlenderRod)
+{
+  constexpr std::int32_t cells = 200;
+  const QuadraticLattice rod({ 2, 2, cells + 1 }, 1.0, MakeMaterial(1.0, 0.3),
+    [](const Place& place) { return place[2] == 0; });
+  EquilibriumRequest request = MakeConverged();
+  constexpr double traction = 1e-9;
+  request.Loads.Forces = LoadFaces(
+    rod.Body, [](const glm::dvec3& point) { return IsAt(point.z, cells); },
+    glm::dvec3(traction, 0.0, 0.0));
+  FiniteElementModel model;
+  model.SetBody(rod.Body);
+  const EquilibriumReport report = model.Solve(request);
+  EXPECT_TRUE(report.IsConverged);
+  RecordMeasured("iterations", report.LinearIterations);
+  EXPECT_LT(report.LinearIterations, 1500);
+  const double byTheory = 4.0 * traction * std::pow(cells, 3);
+  EXPECT_NEAR(
+    GetLoadedMean(request.Loads.Forces, model.GetDisplacements()).x / byTheory, 1.0, 0.01);
+}
+
 // A cube between bonded plates that are pulled apart slightly: force / (E A strain).
 TEST(FiniteElementBeams, BondedCube)
 {
