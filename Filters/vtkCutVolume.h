@@ -92,8 +92,8 @@ public:
    * vertices, or a vertex lies on different sides of two sheets, tetrahedra are switched off as
    * without SmoothCut. The triangles of a connected sheet are first oriented consistently. Strokes
    * of the tool continue from update to update, and divide as one sheet. A smooth cut of the input
-   * volume is joined with the new cuts. SmoothCut affects the next edits; if it changes, the sheet
-   * cuts again. Default: off.
+   * volume is joined with the new cuts, but tetrahedra that only both together divide stay whole.
+   * SmoothCut affects the next edits; if it changes, the sheet cuts again. Default: off.
    */
   vtkSetMacro(SmoothCut, bool);
   vtkGetMacro(SmoothCut, bool);

@@ -33,6 +33,7 @@ CellPart MakePart(const CellFaces& faces)
         std::lower_bound(part.Nodes.begin(), part.Nodes.end(), node) - part.Nodes.begin());
     }
   }
+  OrientFaces(part.Faces);
   return part;
 }
 

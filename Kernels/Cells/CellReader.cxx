@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace deformvolume
@@ -110,9 +111,10 @@ std::int32_t CellReader::AddNode(
 void CellReader::AddPolyhedron(
   std::int64_t cell, std::int64_t count, const PolyhedronFaces& faces, bool areComplete)
 {
-  bool complete = areComplete && faces.size() >= 4;
+  bool complete = areComplete;
   std::vector<std::int32_t> nodes;
   CellFaces facesByIndex;
+  std::set<std::vector<int>> known; // the sorted nodes of the faces
   std::map<std::int32_t, int> indices;
   for (const std::vector<std::int32_t>& points : faces)
   {
@@ -127,9 +129,20 @@ void CellReader::AddPolyhedron(
       }
       face.push_back(inserted.first->second);
     }
-    facesByIndex.push_back(face);
+    // Repeated nodes and repeated faces do not change the cell.
+    face.erase(std::unique(face.begin(), face.end()), face.end());
+    while (face.size() > 1 && face.front() == face.back())
+    {
+      face.pop_back();
+    }
+    std::vector<int> sorted = face;
+    std::sort(sorted.begin(), sorted.end());
+    if (face.size() >= 3 && known.insert(sorted).second)
+    {
+      facesByIndex.push_back(face);
+    }
   }
-  if (!complete)
+  if (!complete || facesByIndex.size() < 4)
   {
     ThrowBadCell(cell, cellNumbers::Polyhedron, count, " and incomplete faces");
   }
@@ -141,6 +154,10 @@ void CellReader::AddPolyhedron(
   PolyhedronSplit split;
   if (!SplitPolyhedron(this->GetNodes(nodes), facesByIndex, points, this->Rounding, split))
   {
+    if (split.IsOpen)
+    {
+      ThrowBadCell(cell, cellNumbers::Polyhedron, count, " and faces that do not close");
+    }
     throw Error("Cell " + std::to_string(cell) + " of the deformation mesh is a concave " +
       GetCellName(cellNumbers::Polyhedron) + " with " + std::to_string(nodes.size()) +
       " points, and no point inside sees all of its faces. Divide it into convex or star-shaped "
@@ -188,9 +205,11 @@ void CellReader::AddHigherOrder(std::int64_t cell, int type, const std::vector<s
     ThrowBadCell(cell, type, count, ", which does not fit its degree");
   }
   std::vector<Tetrahedron>& tetrahedra = this->Cells.Tetrahedra;
+  std::vector<std::size_t> begins;
   std::vector<std::int32_t> some;
   for (const CellPart& part : parts)
   {
+    begins.push_back(tetrahedra.size());
     some.clear();
     for (const int node : part.Nodes)
     {
@@ -209,51 +228,59 @@ void CellReader::AddHigherOrder(std::int64_t cell, int type, const std::vector<s
     }
   }
   this->NumberOfQuadraticCells += HigherOrderCells::GetMidSides(type).empty() ? 0 : 1;
-  this->NumberOfFarMidSides += this->HasNearMidSides(type, nodes) ? 0 : 1;
+  if (this->HasNearMidSides(type, nodes))
+  {
+    this->CountOverlap(begins);
+  }
+  else
+  {
+    ++this->NumberOfFarMidSides;
+  }
 }
 
-// Splits a linear cell, and counts it if it overlaps itself: if more than a tenth of the volume of
-// its tetrahedra has the other orientation. In a cube with the nodes in the order of a voxel it is
-// half of the volume. The volume of a flat cell, as of a layer between two bodies, is only
-// rounding.
-void CellReader::SplitLinear(const std::vector<std::int32_t>& nodes, const CellFaces& faces)
+// Counts a cell if it overlaps itself: if, in its parts, more than a tenth of the volume of the
+// tetrahedra has another orientation than the rest of the part. In a cube with the nodes in the
+// order of a voxel it is half of the volume. The volume of a flat cell, as of a layer between two
+// bodies, is only rounding. begins: the first tetrahedron of each part.
+void CellReader::CountOverlap(const std::vector<std::size_t>& begins)
 {
-  const std::size_t first = this->Cells.Tetrahedra.size();
-  SplitCell(this->GetNodes(nodes), faces, this->Cells.Tetrahedra);
-  std::vector<glm::dvec3>& points = this->Points;
-  points.clear();
   glm::dvec3 low(std::numeric_limits<double>::infinity());
   glm::dvec3 high(-std::numeric_limits<double>::infinity());
-  for (const std::int32_t node : nodes)
+  const auto at = [&](std::int32_t node)
   {
-    points.push_back(this->GetPosition(node));
-    low = glm::min(low, points.back());
-    high = glm::max(high, points.back());
-  }
-  const auto at = [&](std::int32_t node) -> const glm::dvec3&
-  {
-    return points[static_cast<std::size_t>(
-      std::find(nodes.begin(), nodes.end(), node) - nodes.begin())];
+    const glm::dvec3 point = node < this->NumberOfNodes
+      ? this->GetPosition(node)
+      : this->Cells.Derived.Sum(
+          static_cast<std::size_t>(node - this->NumberOfNodes), this->GetPosition);
+    low = glm::min(low, point);
+    high = glm::max(high, point);
+    return point;
   };
-  double ofOneSign = 0.0;
-  double ofOtherSign = 0.0;
-  for (std::size_t t = first; t < this->Cells.Tetrahedra.size(); ++t)
+  double volume = 0.0;
+  double overlap = 0.0;
+  for (std::size_t part = 0; part < begins.size(); ++part)
   {
-    const Tetrahedron& tetrahedron = this->Cells.Tetrahedra[t];
-    const glm::dvec3& apex = at(tetrahedron[0]);
-    const double volume = glm::dot(
-      at(tetrahedron[1]) - apex, glm::cross(at(tetrahedron[2]) - apex, at(tetrahedron[3]) - apex));
-    (volume > 0.0 ? ofOneSign : ofOtherSign) += std::abs(volume);
+    const std::size_t end =
+      part + 1 < begins.size() ? begins[part + 1] : this->Cells.Tetrahedra.size();
+    double ofOneSign = 0.0;
+    double ofOtherSign = 0.0;
+    for (std::size_t t = begins[part]; t < end; ++t)
+    {
+      const Tetrahedron& nodes = this->Cells.Tetrahedra[t];
+      const glm::dvec3 apex = at(nodes[0]);
+      const double signedVolume =
+        glm::dot(at(nodes[1]) - apex, glm::cross(at(nodes[2]) - apex, at(nodes[3]) - apex));
+      (signedVolume > 0.0 ? ofOneSign : ofOtherSign) += std::abs(signedVolume);
+    }
+    volume += ofOneSign + ofOtherSign;
+    overlap += std::min(ofOneSign, ofOtherSign);
   }
-  const double volume = ofOneSign + ofOtherSign;
   const double length = glm::distance(low, high);
   const double farthest = std::max(glm::length(low), glm::length(high));
   constexpr double most = 0.1;
   ++this->NumberOfSplitCells;
-  this->NumberOfFoldedCells += std::min(ofOneSign, ofOtherSign) > most * volume &&
-      volume > 100.0 * this->Rounding * farthest * length * length
-    ? 1
-    : 0;
+  this->NumberOfFoldedCells +=
+    overlap > most * volume && volume > 100.0 * this->Rounding * farthest * length * length ? 1 : 0;
 }
 
 void CellReader::Add(std::int64_t cell, int type, const std::vector<std::int32_t>& nodes,
@@ -261,6 +288,8 @@ void CellReader::Add(std::int64_t cell, int type, const std::vector<std::int32_t
 {
   const auto count = static_cast<std::int64_t>(nodes.size());
   CheckSize(cell, type, count);
+  std::vector<Tetrahedron>& tetrahedra = this->Cells.Tetrahedra;
+  const std::vector<std::size_t> begin{ tetrahedra.size() };
   if (type == cellNumbers::Tetrahedron)
   {
     this->AddTetrahedron({ { nodes[0], nodes[1], nodes[2], nodes[3] } });
@@ -270,11 +299,13 @@ void CellReader::Add(std::int64_t cell, int type, const std::vector<std::int32_t
     std::vector<std::int32_t> swapped = nodes;
     std::swap(swapped[2], swapped[3]);
     std::swap(swapped[6], swapped[7]);
-    this->SplitLinear(swapped, *GetCellFaces(cellNumbers::Hexahedron));
+    SplitCell(this->GetNodes(swapped), *GetCellFaces(cellNumbers::Hexahedron), tetrahedra);
+    this->CountOverlap(begin);
   }
   else if (const CellFaces* faces = GetCellFaces(type))
   {
-    this->SplitLinear(nodes, *faces);
+    SplitCell(this->GetNodes(nodes), *faces, tetrahedra);
+    this->CountOverlap(begin);
   }
   else if (HigherOrderCells::Contain(type))
   {
@@ -311,7 +342,7 @@ MeshCells CellReader::Finish()
     this->Cells.WrongOrder += (this->Cells.WrongOrder.empty() ? "" : " ") +
       std::to_string(this->NumberOfFoldedCells) + " of " +
       std::to_string(this->NumberOfSplitCells) +
-      " hexahedra, wedges, pyramids and prisms of the deformation mesh overlap themselves at rest, "
+      " cells of the deformation mesh that are split into tetrahedra overlap themselves at rest, "
       "so that voxels in them may be lost.";
   }
   return std::move(this->Cells);

@@ -97,7 +97,7 @@ private:
   void AddHigherOrder(std::int64_t cell, int type, const std::vector<std::int32_t>& nodes,
     const std::array<int, 3>* degrees);
   bool HasNearMidSides(int type, const std::vector<std::int32_t>& nodes) const;
-  void SplitLinear(const std::vector<std::int32_t>& nodes, const CellFaces& faces);
+  void CountOverlap(const std::vector<std::size_t>& begins);
 
   const std::int32_t NumberOfNodes;
   const Positions GetPosition;
@@ -106,7 +106,6 @@ private:
   HigherOrderCells HigherOrder;
   std::vector<std::int32_t> Places; // CellNode::Place of each node; may be empty until it is used
   std::vector<CellNode> Nodes;      // of a cell, kept to save allocations
-  std::vector<glm::dvec3> Points;   // of a cell, kept to save allocations
   std::map<int, std::int64_t> Ignored;
   std::int64_t NumberOfQuadraticCells = 0;
   std::int64_t NumberOfFarMidSides = 0;

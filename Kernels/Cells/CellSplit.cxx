@@ -4,6 +4,9 @@
 #include "CellNumbers.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <map>
+#include <utility>
 
 namespace deformvolume
 {
@@ -78,6 +81,70 @@ int GetNumberOfCellPoints(int cellType)
     default:
       return 0;
   }
+}
+
+bool OrientFaces(CellFaces& faces)
+{
+  struct Use
+  {
+    std::size_t Face;
+    bool Ascending;
+  };
+  std::map<std::pair<int, int>, std::vector<Use>> edges;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+  {
+    for (std::size_t i = 0; i < faces[f].size(); ++i)
+    {
+      const int a = faces[f][i];
+      const int b = faces[f][(i + 1) % faces[f].size()];
+      edges[std::minmax(a, b)].push_back({ f, a < b });
+    }
+  }
+  std::vector<std::vector<std::pair<std::size_t, bool>>> neighbors(faces.size());
+  for (const auto& edge : edges)
+  {
+    const std::vector<Use>& uses = edge.second;
+    if (uses.size() != 2 || edge.first.first == edge.first.second)
+    {
+      return false;
+    }
+    const bool isSame = uses[0].Ascending != uses[1].Ascending;
+    neighbors[uses[0].Face].emplace_back(uses[1].Face, isSame);
+    neighbors[uses[1].Face].emplace_back(uses[0].Face, isSame);
+  }
+  std::vector<int> senses(faces.size(), 0);
+  std::vector<std::size_t> waiting{ 0 };
+  senses[0] = 1;
+  while (!waiting.empty())
+  {
+    const std::size_t face = waiting.back();
+    waiting.pop_back();
+    for (const auto& [other, isSame] : neighbors[face])
+    {
+      const int sense = isSame ? senses[face] : -senses[face];
+      if (senses[other] == 0)
+      {
+        senses[other] = sense;
+        waiting.push_back(other);
+      }
+      else if (senses[other] != sense)
+      {
+        return false;
+      }
+    }
+  }
+  for (std::size_t f = 0; f < faces.size(); ++f)
+  {
+    if (senses[f] == 0)
+    {
+      return false;
+    }
+    if (senses[f] < 0)
+    {
+      std::reverse(faces[f].begin(), faces[f].end());
+    }
+  }
+  return true;
 }
 
 void SplitCell(

@@ -39,7 +39,12 @@ struct CellNode
   }
 };
 
-/// Splits a convex cell into tetrahedra between its own points, and appends these.
+/// Orients all faces consistently. Returns false if an edge does not belong to exactly two faces,
+/// or if there is no consistent orientation.
+bool OrientFaces(CellFaces& faces);
+
+/// Splits a convex cell into tetrahedra between its own points, and appends these. If the faces are
+/// oriented consistently, so are the tetrahedra.
 ///
 /// The lowest node is connected to all faces that do not contain it. Each of these faces is split
 /// into a fan of triangles around its own lowest node. So the split of a face depends only on its

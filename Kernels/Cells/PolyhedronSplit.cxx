@@ -71,70 +71,33 @@ bool IsConvex(const CellFaces& faces, const std::vector<glm::dvec3>& points, dou
   return true;
 }
 
-// Orients all faces consistently. Returns false if an edge does not belong to exactly two faces, or
-// if there is no consistent orientation.
-bool OrientFaces(CellFaces& faces)
+// Whether the faces close the cell: then their areas, as vectors that point outwards, add up to 0.
+// Outwards is away from the mean of the points. error: of the positions.
+bool IsClosed(const CellFaces& faces, const std::vector<glm::dvec3>& points, double error)
 {
-  struct Use
+  glm::dvec3 center(0.0);
+  for (const glm::dvec3& point : points)
   {
-    std::size_t Face;
-    bool Ascending;
-  };
-  std::map<std::pair<int, int>, std::vector<Use>> edges;
-  for (std::size_t f = 0; f < faces.size(); ++f)
-  {
-    for (std::size_t i = 0; i < faces[f].size(); ++i)
-    {
-      const int a = faces[f][i];
-      const int b = faces[f][(i + 1) % faces[f].size()];
-      edges[std::minmax(a, b)].push_back({ f, a < b });
-    }
+    center += point / static_cast<double>(points.size());
   }
-  std::vector<std::vector<std::pair<std::size_t, bool>>> neighbors(faces.size());
-  for (const auto& edge : edges)
+  glm::dvec3 sum(0.0);
+  double total = 0.0;
+  double edges = 0.0;
+  for (const std::vector<int>& face : faces)
   {
-    const std::vector<Use>& uses = edge.second;
-    if (uses.size() != 2 || edge.first.first == edge.first.second)
+    const auto at = [&](std::size_t i)
+    { return points[static_cast<std::size_t>(face[i % face.size()])]; };
+    glm::dvec3 area(0.0);
+    for (std::size_t i = 0; i < face.size(); ++i)
     {
-      return false;
+      area += GetArea(at(0), at(i), at(i + 1));
+      edges += glm::distance(at(i), at(i + 1));
     }
-    const bool isSame = uses[0].Ascending != uses[1].Ascending;
-    neighbors[uses[0].Face].emplace_back(uses[1].Face, isSame);
-    neighbors[uses[1].Face].emplace_back(uses[0].Face, isSame);
+    sum += glm::dot(area, at(0) - center) < 0.0 ? -area : area;
+    total += glm::length(area);
   }
-  std::vector<int> senses(faces.size(), 0);
-  std::vector<std::size_t> waiting{ 0 };
-  senses[0] = 1;
-  while (!waiting.empty())
-  {
-    const std::size_t face = waiting.back();
-    waiting.pop_back();
-    for (const auto& [other, isSame] : neighbors[face])
-    {
-      const int sense = isSame ? senses[face] : -senses[face];
-      if (senses[other] == 0)
-      {
-        senses[other] = sense;
-        waiting.push_back(other);
-      }
-      else if (senses[other] != sense)
-      {
-        return false;
-      }
-    }
-  }
-  for (std::size_t f = 0; f < faces.size(); ++f)
-  {
-    if (senses[f] == 0)
-    {
-      return false;
-    }
-    if (senses[f] < 0)
-    {
-      std::reverse(faces[f].begin(), faces[f].end());
-    }
-  }
-  return true;
+  constexpr double rounding = 1e-9;
+  return !(glm::length(sum) > rounding * total + error * edges);
 }
 
 // Splits a polygon into triangles: a fan around its first node if all triangles of the fan have the
@@ -307,14 +270,19 @@ bool SplitPolyhedron(const std::vector<CellNode>& nodes, const CellFaces& faces,
     const glm::dvec3 size = glm::abs(point);
     error = std::max({ error, rounding * size.x, rounding * size.y, rounding * size.z });
   }
-  if (IsConvex(faces, points, error))
+  const bool isConvex = IsConvex(faces, points, error);
+  const bool isClosed = IsClosed(faces, points, error);
+  if (isConvex && isClosed)
   {
     return true;
   }
+  // Flat cells, of which no side is outside, count as closed if their edges are.
   CellFaces oriented = faces;
-  if (!OrientFaces(oriented))
+  const bool isOriented = OrientFaces(oriented);
+  if (isConvex || !isOriented)
   {
-    return true;
+    split.IsOpen = !isClosed && !isOriented;
+    return !split.IsOpen;
   }
   std::vector<Triangle> triangles;
   for (const std::vector<int>& face : oriented)

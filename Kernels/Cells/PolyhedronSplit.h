@@ -23,6 +23,8 @@ struct PolyhedronSplit
   std::vector<double> CenterWeights;
   /// The triangles that form tetrahedra with the center. Empty if there is no center.
   std::vector<std::array<std::int32_t, 3>> Triangles;
+  /// Whether the faces do not close the polyhedron, so that there is no split.
+  bool IsOpen = false;
 };
 
 /// Splits a polyhedron. points: positions of the nodes at rest. rounding: relative error of the
@@ -30,9 +32,9 @@ struct PolyhedronSplit
 ///
 /// If the tetrahedra of SplitCell() fill the polyhedron, as in convex cells, they are the result.
 /// Otherwise the triangles of the faces are connected to a point inside from which all triangles
-/// are visible. Returns false if no such point is found. The triangles of a face depend only on its
-/// nodes and their positions, so cells that share a face split it in the same way. A polyhedron
-/// that is not closed is split by SplitCell().
+/// are visible. Returns false if no such point is found, or if the faces do not close. The
+/// triangles of a face depend only on its nodes and their positions, so cells that share a face
+/// split it in the same way.
 bool SplitPolyhedron(const std::vector<CellNode>& nodes, const CellFaces& faces,
   const std::vector<glm::dvec3>& points, double rounding, PolyhedronSplit& split);
 

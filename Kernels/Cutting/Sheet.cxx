@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -128,6 +129,9 @@ Sheet Sheet::Orient() const
   std::map<Coordinates, int> numbers;
   std::map<std::array<int, 2>, std::vector<std::size_t>> edges;
   std::vector<std::array<int, 3>> corners;
+  Sheet oriented = *this;
+  oriented.Triangles.clear();
+  std::set<std::array<int, 3>> known;
   for (const SnappedTriangle& triangle : this->Triangles)
   {
     std::array<int, 3> corner;
@@ -138,7 +142,15 @@ Sheet Sheet::Orient() const
         numbers.emplace(Coordinates{ { p.x, p.y, p.z } }, static_cast<int>(numbers.size()))
           .first->second;
     }
+    // Leave out triangles with two equal corners, and repeated ones, which would connect others.
+    std::array<int, 3> sorted = corner;
+    std::sort(sorted.begin(), sorted.end());
+    if (sorted[0] == sorted[1] || sorted[1] == sorted[2] || !known.insert(sorted).second)
+    {
+      continue;
+    }
     corners.push_back(corner);
+    oriented.Triangles.push_back(triangle);
     for (std::size_t k = 0; k < 3; ++k)
     {
       const auto ends = std::minmax(corner[k], corner[(k + 1) % 3]);
@@ -150,7 +162,6 @@ Sheet Sheet::Orient() const
     const std::array<int, 3>& c = corners[triangle];
     return (c[0] == a && c[1] == b) || (c[1] == a && c[2] == b) || (c[2] == a && c[0] == b);
   };
-  Sheet oriented = *this;
   std::vector<bool> isKnown(corners.size());
   for (std::size_t first = 0; first < corners.size(); ++first)
   {

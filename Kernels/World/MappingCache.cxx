@@ -110,7 +110,7 @@ void MappingCache::Update(
   // The result must not depend on the part of the volume that is mapped.
   const bool holdsVoxels = mapping.NumberOfInnerVoxels > 0 || !mapping.Boundary.IsEmpty() ||
     (!volume.IsWhole() && (builder.HoldsVoxels() || EndsWithin(mesh, volume))) ||
-    (volume.Outside.AreKept() && EndsWithin(mesh, volume));
+    (volume.Outside.AreKept() && volume.Outside.FadeDistance > 0.0 && EndsWithin(mesh, volume));
   if (volume.IsWhole())
   {
     this->Builder.reset();

@@ -38,6 +38,12 @@ _VALID = "vtkValidPointMask"
 # Arrays of ghosts and of edits are masks of the volume, and are not resampled.
 _POINT_MASKS = ("vtkGhostType", _VALID, "BoundaryDistance", "CutDistance")
 _CELL_MASKS = ("ActiveTetrahedra", "CutTetrahedra", "vtkGhostType")
+# The arrays that the output has in addition, and their settings.
+_GENERATED = {
+    "RestPosition": "GenerateRestPositions",
+    "Jacobian": "GenerateJacobian",
+    "FoldCount": "GenerateFoldCount",
+}
 
 
 def _direction(image):
@@ -583,6 +589,11 @@ class DeformVolume(VTKPythonAlgorithmBase):
         for number, array in enumerate(arrays):
             if array.GetName() and any(other.GetName() == array.GetName() for other in arrays[:number]):
                 raise ValueError(f'Two arrays of the volume are named "{array.GetName()}". Rename one of them.')
+            if array.GetName() in _GENERATED and self._settings[_GENERATED[array.GetName()]]:
+                raise ValueError(
+                    f'The volume on port 0 has a point array "{array.GetName()}", which is the name of an array that '
+                    "the filter generates. Rename or remove it."
+                )
         edits = [data.GetArray(name) for name in _POINT_MASKS]
         edits += [image.GetCellData().GetArray(name) for name in _CELL_MASKS]
         ids = (data.GetGlobalIds(), data.GetPedigreeIds())

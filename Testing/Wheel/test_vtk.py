@@ -706,6 +706,17 @@ class Pipeline(unittest.TestCase):
             self.filter.SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name)
             self.filter.Update()
             self.filter.SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "")
+        # An array of the volume has the name of a generated one.
+        self.source.Update()
+        volume = self.source.GetOutput().NewInstance()
+        volume.DeepCopy(self.source.GetOutput())
+        volume.GetPointData().GetScalars().SetName("Jacobian")
+        self.filter.SetInputData(volume)
+        self.filter.GenerateJacobianOn()
+        self.expect_error('"Jacobian", which is the name', make_mesh(self.SHIFT))
+        self.filter.GenerateJacobianOff()
+        self.filter.Update()
+        self.filter.SetInputConnection(self.source.GetOutputPort())
         # The filter works again with a valid deformation.
         self.filter.SetDeformationData(make_mesh(self.SHIFT))
         self.filter.Update()

@@ -169,6 +169,44 @@ TEST(SmoothCut, Closed)
   }
 }
 
+// Two triangles of opposite orientation divide as one sheet, also with triangles without area, and
+// with a triangle that the sheet has twice.
+TEST(SmoothCut, TrianglesWithoutArea)
+{
+  auto volume = MakeVolume(Box);
+  const auto divide = [&](const std::vector<std::array<vtkIdType, 3>>& triangles)
+  {
+    vtkNew<vtkPoints> points;
+    for (const glm::dvec3& index : { glm::dvec3(4.3, -5.0, -5.0), glm::dvec3(4.8, 15.0, -5.0),
+           glm::dvec3(5.1, -5.0, 15.0), glm::dvec3(5.6, 15.0, 15.0), glm::dvec3(4.8, 15.0, -5.0) })
+    {
+      double point[3];
+      volume->TransformContinuousIndexToPhysicalPoint(&index.x, point);
+      points->InsertNextPoint(point);
+    }
+    auto sheet = vtkSmartPointer<vtkPolyData>::New();
+    vtkNew<vtkCellArray> cells;
+    for (const std::array<vtkIdType, 3>& triangle : triangles)
+    {
+      cells->InsertNextCell(3, triangle.data());
+    }
+    sheet->SetPoints(points);
+    sheet->SetPolys(cells);
+    Edited<vtkCutVolume> cut;
+    SetUpCut(cut, volume, 0.0);
+    cut.Filter->SetSheetData(sheet);
+    EXPECT_EQ(cut.CountOff(), 0);
+    return Arrays(cut);
+  };
+  const Arrays plane = divide({ { 0, 1, 2 }, { 1, 3, 2 } });
+  EXPECT_GT(
+    std::count_if(plane.Cells.begin(), plane.Cells.end(), [](int cell) { return cell; }), 70);
+  EXPECT_TRUE(divide({ { 0, 1, 2 }, { 1, 2, 3 } }) == plane);
+  EXPECT_TRUE(divide({ { 0, 1, 2 }, { 1, 2, 3 }, { 1, 2, 2 } }) == plane);
+  EXPECT_TRUE(divide({ { 0, 1, 2 }, { 4, 2, 3 }, { 1, 2, 4 } }) == plane);
+  EXPECT_TRUE(divide({ { 0, 1, 2 }, { 1, 3, 2 }, { 3, 2, 1 } }) == plane);
+}
+
 // The gap between the two moved planes is empty, and all other samples of the volume are covered,
 // at four samples a voxel.
 TEST(SmoothCut, Gap)

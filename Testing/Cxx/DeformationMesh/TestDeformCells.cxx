@@ -10,15 +10,19 @@
 #include "vtkDeviceVectorArray.h"
 
 #include <vtkArrayChanges.h>
+#include <vtkBiQuadraticQuadraticWedge.h>
 #include <vtkCellArray.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
+#include <vtkLagrangeTetra.h>
 #include <vtkMultiBlockDataSet.h>
+#include <vtkTriQuadraticHexahedron.h>
 
 #include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <random>
 
 using namespace filterTesting;
@@ -328,6 +332,42 @@ TEST(DeformCells, MidSides)
   EXPECT_EQ(deformed.TakeWarning(), "");
 }
 
+// Cells with nodes on faces in the order of other programs overlap themselves. Middles of edges are
+// right.
+TEST(DeformCells, OrderOfHigherOrderCells)
+{
+  const auto check = [](vtkCell* cell, const std::vector<vtkIdType>& order)
+  {
+    const Grid mesh = Grid::New();
+    vtkNew<vtkPoints> points;
+    const double* parameters = cell->GetParametricCoords();
+    for (vtkIdType i = 0; i < cell->GetNumberOfPoints(); ++i)
+    {
+      points->InsertNextPoint(parameters + 3 * i);
+    }
+    mesh->SetPoints(points);
+    std::vector<vtkIdType> ids(static_cast<std::size_t>(cell->GetNumberOfPoints()));
+    for (const bool isWrong : { false, true })
+    {
+      std::iota(ids.begin(), ids.end(), 0);
+      std::copy(order.begin(), isWrong ? order.end() : order.begin(),
+        ids.end() - static_cast<std::ptrdiff_t>(order.size()));
+      mesh->Reset();
+      mesh->InsertNextCell(cell->GetCellType(), cell->GetNumberOfPoints(), ids.data());
+      EXPECT_EQ(
+        HasPart(deformvolume::ReadCells({ mesh }, { mesh }).WrongOrder, "1 of 1 cells"), isWrong)
+        << cell->GetClassName();
+    }
+  };
+  check(vtkNew<vtkTriQuadraticHexahedron>(), { 26, 24, 25, 22, 21, 23, 20 }); // as C3D27 of Abaqus
+  check(vtkNew<vtkBiQuadraticQuadraticWedge>(), { 16, 17, 15 });
+  vtkNew<vtkLagrangeTetra> tetrahedron;
+  tetrahedron->GetPoints()->SetNumberOfPoints(10);
+  tetrahedron->GetPointIds()->SetNumberOfIds(10);
+  tetrahedron->Initialize();
+  check(tetrahedron, { 9, 8 }); // as Gmsh
+}
+
 // A hexahedron with the nodes in the order of a voxel causes a warning. A turned, a mirrored and a
 // flat one do not.
 TEST(DeformCells, OrderOfHexahedra)
@@ -354,7 +394,7 @@ TEST(DeformCells, OrderOfHexahedra)
     Deformed deformed(volume, mesh);
     deformed.Filter->Update();
     const std::string warning = deformed.TakeWarning();
-    EXPECT_EQ(warning.find("1 of 1 hexahedra") != std::string::npos, isWrong);
+    EXPECT_EQ(HasPart(warning, "1 of 1 cells of the deformation mesh that are split"), isWrong);
     EXPECT_EQ(warning.empty(), !isWrong);
   }
   // Layers without thickness between two bodies.

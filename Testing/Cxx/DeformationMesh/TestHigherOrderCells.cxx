@@ -791,6 +791,64 @@ TEST(HigherOrderCells, ConcavePolyhedra)
     ExpectError(MakePrisms(cup, 1, seed),
       "Cell 0 of the deformation mesh is a concave polyhedron with 16 points");
   }
+  // Faces that do not close: a side is missing, or another side is there twice instead.
+  const std::vector<std::vector<int>> angular = { { 0, 1, 2, 3, 4, 5 }, { 6, 7, 8, 9, 10, 11 },
+    { 0, 1, 7, 6 }, { 1, 2, 8, 7 }, { 2, 3, 9, 8 }, { 3, 4, 10, 9 }, { 4, 5, 11, 10 },
+    { 5, 0, 6, 11 } };
+  const auto makeOpen = [](std::vector<std::vector<int>> sides, std::size_t missing, bool isTwice)
+  {
+    sides[missing] = sides[(missing + 1) % sides.size()];
+    if (!isTwice)
+    {
+      sides.erase(sides.begin() + static_cast<std::ptrdiff_t>(missing));
+    }
+    return sides;
+  };
+  std::vector<glm::dvec3> ofAngle;
+  for (const double z : { 0.0, 1.0 })
+  {
+    for (const auto& corner : angle)
+    {
+      ofAngle.emplace_back(corner[0], corner[1], z);
+    }
+  }
+  const std::vector<glm::dvec3> ofCube(points.begin(), points.begin() + 8);
+  for (const bool isTwice : { false, true })
+  {
+    for (unsigned int missing = 0; missing < 6; ++missing)
+    {
+      PolyhedralMesh cube(ofCube, missing);
+      cube.Add(makeOpen(sides, missing, isTwice));
+      ExpectError(cube.Mesh, "and faces that do not close");
+      PolyhedralMesh open(ofAngle, missing);
+      open.Add(makeOpen(angular, missing, isTwice));
+      ExpectError(open.Mesh, "and faces that do not close");
+    }
+  }
+  // A cube without a height is closed.
+  std::vector<glm::dvec3> flat = ofCube;
+  for (glm::dvec3& point : flat)
+  {
+    point.z = 0.0;
+  }
+  PolyhedralMesh cube(flat, 0);
+  cube.Add(sides);
+  EXPECT_FALSE(deformvolume::ReadCells({ cube.Mesh }, { cube.Mesh }).Tetrahedra.empty());
+  // Repeated nodes and faces do not change a cell.
+  std::vector<std::vector<int>> repeated = angular;
+  repeated.push_back(angular[4]);
+  for (std::vector<int>& face : repeated)
+  {
+    face.push_back(face.front());
+    face.insert(face.begin() + 2, face[1]);
+  }
+  for (unsigned int seed = 0; seed < 10; ++seed)
+  {
+    PolyhedralMesh mesh(ofAngle, seed);
+    mesh.Add(repeated);
+    CheckFilled(
+      "repeated nodes", mesh.Mesh, GetArea(angle), 2.0 * GetArea(angle) + GetLength(angle));
+  }
   // Convex cells are split without derived nodes: all their tetrahedra have the node of lowest id.
   Polygon round;
   for (int i = 0; i < 7; ++i)

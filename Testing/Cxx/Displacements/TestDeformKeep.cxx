@@ -135,6 +135,12 @@ TEST(DeformKeep, Misuse)
   subject.Filter->SetDeformationData(MakeBox(glm::dvec3(105.2), glm::dvec3(111.7)));
   subject.VerifyFailure("no voxel");
   restore();
+  // A mesh between two layers of voxels moves only what fades.
+  subject.Filter->SetDeformationData(MakeBox(glm::dvec3(5.2), glm::dvec3(5.7)));
+  subject.Update();
+  subject.Filter->SetFadeDistance(0.0);
+  subject.VerifyFailure("no voxel");
+  restore();
   // FadeDistance is not checked in other modes. Without a deformation KEEP has no effect.
   subject.Filter->SetFadeDistance(-1.0);
   subject.Filter->SetOutsideModeToDiscard();
