@@ -152,15 +152,17 @@ std::string FindFaultOfSize(const MeshAtRest& mesh, const ImageGeometry& volume)
   IndexBounds box;
   for (const Tetrahedron& tetrahedron : mesh.Tetrahedra)
   {
+    IndexBounds own;
     for (const std::int32_t node : tetrahedron)
     {
-      box.Add(mesh.Points[static_cast<std::size_t>(node)]);
+      own.Add(mesh.Points[static_cast<std::size_t>(node)]);
     }
-    if (IsLarge(box, volume))
+    if (IsLarge(own, volume))
     {
       return "The cells of the mesh are more than ten times as long as the volume. " +
         Describe("mesh", FindBox(mesh, volume.GetIndexToWorld()), volume);
     }
+    box.Add(own);
     if (!IsSmall(box, volume))
     {
       return ""; // mostly after a few tetrahedra

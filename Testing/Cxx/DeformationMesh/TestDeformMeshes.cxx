@@ -729,6 +729,34 @@ vtkSmartPointer<vtkDoubleArray> MakeConstant(const char* called, int components,
   return array;
 }
 
+// Small cells far apart are not cells that are longer than the volume.
+TEST(DeformMeshes, SmallCellsFarApart)
+{
+  const auto volume = MakeVolume({ { 0, 9, 0, 9, 0, 9 } });
+  for (const double length : { 1.8, 200.0 })
+  {
+    vtkNew<vtkUnstructuredGrid> mesh;
+    vtkNew<vtkPoints> points;
+    mesh->SetPoints(points);
+    for (const double first : { 3.6, 500.0 })
+    {
+      for (int corner = 0; corner < 4; ++corner)
+      {
+        points->InsertNextPoint(first + (corner == 1 ? length : 0.0),
+          first + (corner == 2 ? length : 0.0), first + (corner == 3 ? length : 0.0));
+      }
+      const vtkIdType last = points->GetNumberOfPoints();
+      const vtkIdType nodes[4] = { last - 4, last - 3, last - 2, last - 1 };
+      mesh->InsertNextCell(VTK_TETRA, 4, nodes);
+    }
+    SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+    Deformed deformed(volume, mesh);
+    deformed.Filter->SetOutputBoundsModeToVolumeBounds();
+    deformed.Filter->Update();
+    EXPECT_EQ(HasPart(deformed.TakeWarning(), "more than ten times as long"), length > 100.0);
+  }
+}
+
 TEST(DeformMeshes, Directions)
 {
   const auto volume = MakeVolume();
