@@ -19,6 +19,11 @@ def native(array, what: str) -> numpy.ndarray:
         )
     if hasattr(array, "dataobj"):  # an image of nibabel
         raise TypeError(f"{what} is a {type(array).__name__}. Give its values, numpy.asarray(image.dataobj).")
+    if hasattr(array, "GetSpacing"):  # an image of ITK, SimpleITK or VTK
+        raise TypeError(
+            f"{what} is a {type(array).__name__}. Give an array with the axes x, y, z: itk.array_from_image() returns "
+            "the axes z, y, x. For images of SimpleITK and VTK, there are deformvolume.sitk and deformvolume.vtk."
+        )
     array = numpy.asarray(array)
     if not array.dtype.isnative:
         array = array.astype(array.dtype.newbyteorder("="))

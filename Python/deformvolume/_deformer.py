@@ -453,7 +453,7 @@ class Deformer:
             mask = self._take_mask(blanked, self._shape or (), numpy.uint8, "blanked voxels")
         self._set_mask("dv_set_blanked", mask)
 
-    def set_masks(self, *, blanked=None, active=None, boundary=None, cut=None, cut_distances=None) -> None:
+    def _set_masks(self, *, blanked=None, active=None, boundary=None, cut=None, cut_distances=None) -> None:
         """Sets masks with the axes z, y, x. None: no mask.
 
         Args:

@@ -633,7 +633,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         if valid is not None:
             invalid = _view(valid, shape) == 0
             blanked = invalid if blanked is None else blanked | invalid
-        self._deformer.set_masks(
+        self._deformer._set_masks(
             blanked=blanked,
             active=tetrahedra,
             boundary=view(boundary, shape),

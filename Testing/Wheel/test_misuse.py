@@ -60,6 +60,15 @@ class Misuse(unittest.TestCase):
             dataobj = numpy.zeros((3, 3, 3))
 
         self.refuse(TypeError, r"is a Image. Give its values, numpy.asarray\(image.dataobj\)", Image())
+
+        class ItkImage:  # as of the package itk
+            def __array__(self, *_, **__):
+                return numpy.zeros((3, 3, 3))
+
+            def GetSpacing(self):  # pylint: disable=invalid-name
+                return 1, 1, 1
+
+        self.refuse(TypeError, "is a ItkImage. Give an array with the axes x, y, z", ItkImage())
         of_nifti = deformvolume.Field(numpy.zeros((3, 3, 3, 1, 3)), AFFINE)
         self.refuse(ValueError, "Remove axis 3", mesh=of_nifti)
         self.refuse(TypeError, "Give integers", mesh=Mesh(POINTS.astype(complex), CELLS, MOVED))
@@ -263,11 +272,11 @@ class Misuse(unittest.TestCase):
         deformer.set_volume(make_volume(), AFFINE)
         active = numpy.full((11, 10, 9), 31, numpy.uint8)
         active[:, :5] = 0
-        deformer.set_masks(active=active)
+        deformer._set_masks(active=active)
         some = deformer.deform().coverage.sum()
         deformer.set_blanked(numpy.zeros((10, 11, 12), bool))
         self.assertEqual(some, deformer.deform().coverage.sum())
-        deformer.set_masks()
+        deformer._set_masks()
         self.assertLess(some, deformer.deform().coverage.sum())
 
     # The result of bool can be an index, also with cubic interpolation, which overshoots, and any background.
