@@ -373,7 +373,7 @@ void vtkDeformGeometryFilter::vtkInternals::MoveAll(vtkDataObject* input, vtkDat
 //------------------------------------------------------------------------------
 void vtkDeformGeometryFilter::vtkInternals::WarnOfOutside()
 {
-  const std::string folds = deformvolume::FindFoldsOfFading(
+  const std::string folds = deformvolume::GetFoldWarning(
     "border of the deformation moves", this->LongestFading, this->Self->FadeDistance);
   if (!folds.empty())
   {

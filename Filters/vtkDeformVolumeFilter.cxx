@@ -278,7 +278,7 @@ int vtkDeformVolumeFilter::ComputePipelineMTime(vtkInformation* request,
   vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
   vtkMTimeType* mtime)
 {
-  this->Internals->AnnounceGrowth();
+  this->Internals->MarkModifiedIfBoundsHaveGrown();
   this->Internals->Execution.Renew(this);
   return this->Superclass::ComputePipelineMTime(
     request, input, output, requestFromOutputPort, mtime);

@@ -145,11 +145,11 @@ void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
       actions->begin(), actions->end(), [this](Action& action) { this->ForgetStates(action); });
     actions->clear();
   }
-  this->MakeStill();
+  this->MakeUndeformedMesh();
   this->Model = Session::NONE;
-  this->TakeRestMesh();
+  this->MakeRestMesh();
   this->IsStroke = false;
-  this->Refused.clear();
+  this->RejectedHandles.clear();
   this->CutFilter->SetInputData(this->Volume);
   this->CutFilter->SetSheetData(nullptr);
   this->CutFilter->SetDeformationData(nullptr);
@@ -194,7 +194,7 @@ void SessionPipeline::Apply(const SessionEvent& event)
   this->IsStroke = this->IsStroke && event.Kind == SessionEvent::CARVE;
   const bool isOfGrab = event.Kind == SessionEvent::MOVE_GRAB ||
     event.Kind == SessionEvent::END_GRAB || event.Kind == SessionEvent::HOLD;
-  if (isOfGrab && this->Refused.count(event.Numbers[0]) > 0)
+  if (isOfGrab && this->RejectedHandles.count(event.Numbers[0]) > 0)
   {
     return; // the caller may not know yet that the handle could not be grabbed
   }
@@ -267,7 +267,7 @@ void SessionPipeline::BeginGrab(double handle, const glm::dvec3& position)
   }
   catch (...)
   {
-    this->Refused.insert(handle);
+    this->RejectedHandles.insert(handle);
     throw;
   }
 }
@@ -298,7 +298,7 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   }
   // The handle begins at the deformed position of Rest, so that nothing moves before MoveGrab().
   drag.Now = drag.LastPossible = FindDeformedPosition(this->GetDeformation(), drag.Rest);
-  this->Do(drag);
+  this->AddActionWithState(drag);
 }
 
 void SessionPipeline::CheckNodes(const Action& drag) const
@@ -348,7 +348,7 @@ void SessionPipeline::Release(double handle)
   Action release;
   release.Kind = Action::RELEASE;
   release.Handle = handle;
-  this->Do(release);
+  this->AddActionWithState(release);
 }
 
 void SessionPipeline::Cut(const SessionEvent& event)
@@ -393,7 +393,7 @@ void SessionPipeline::Cut(const SessionEvent& event)
   }
   disconnect();
   this->Update(this->CutFilter);
-  this->Do(cut);
+  this->AddActionWithState(cut);
 }
 
 void SessionPipeline::CutMesh(
@@ -443,7 +443,7 @@ void SessionPipeline::Carve(const SessionEvent& event)
   {
     Action carving;
     carving.Kind = Action::CARVE;
-    this->Do(carving);
+    this->AddActionWithState(carving);
   }
   else
   {

@@ -137,8 +137,8 @@ private:
   void Carve(const SessionEvent& event);
   void SetModel(int model);
   void SetLattice(int nodes);
-  void Do(Action action);
-  void Push(Action action);
+  void AddActionWithState(Action action);
+  void AddAction(Action action);
   void Undo();
   void Redo();
   void UndoEdits(vtkVolumeEditAlgorithm* filter, int edits);
@@ -163,8 +163,8 @@ private:
   std::vector<NodeOfHandle> FindNodes(const glm::dvec3& rest);
   void Update(vtkAlgorithm* filter);
   void Connect();
-  void MakeStill();
-  void TakeRestMesh();
+  void MakeUndeformedMesh();
+  void MakeRestMesh();
   bool FindMotion();
   vtkAlgorithm* GetModelFilter();
   vtkElasticDeformation* GetElastic();
@@ -172,8 +172,8 @@ private:
   vtkSmartPointer<vtkImageData> Volume;
   vtkSmartPointer<vtkUnstructuredGrid> Mesh; // of SetInputs(), or null
   vtkSmartPointer<vtkUnstructuredGrid> RestMesh;
-  bool IsMeshOfElements = false;              // whether RestMesh was made for finite elements
-  vtkSmartPointer<vtkUnstructuredGrid> Still; // a mesh whose displacements are 0
+  bool IsMeshOfElements = false; // whether RestMesh was made for finite elements
+  vtkSmartPointer<vtkUnstructuredGrid> UndeformedMesh; // a mesh whose displacements are 0
   vtkNew<vtkCutVolume> CutFilter;
   vtkNew<vtkCarveVolume> CarveFilter;
   vtkNew<vtkChainMailDeformation> ChainMail;
@@ -191,8 +191,8 @@ private:
   double HandleRadius = 0.0;
   int RelaxationSweeps = 5;
   double UndoMemory = 1073741824.0;
-  bool IsStroke = false;    // whether CarveTo() continues a stroke
-  std::set<double> Refused; // handles that could not be grabbed
+  bool IsStroke = false;            // whether CarveTo() continues a stroke
+  std::set<double> RejectedHandles; // handles that could not be grabbed
   Actions Done;
   Actions Undone;
   std::vector<double> LastVectors; // displacements of the mesh after the last step

@@ -21,14 +21,14 @@ namespace deformvolume
 {
 
 // Saves the state of the model: must be called before the action changes it.
-void SessionPipeline::Do(Action action)
+void SessionPipeline::AddActionWithState(Action action)
 {
   action.Before = this->SaveState();
-  this->Push(std::move(action));
+  this->AddAction(std::move(action));
 }
 
 // Adds an action that cannot fail any more: the undone actions are lost.
-void SessionPipeline::Push(Action action)
+void SessionPipeline::AddAction(Action action)
 {
   for (Action& undone : this->Undone)
   {

@@ -67,18 +67,18 @@ namespace deformvolume
 {
 
 // Makes the mesh of the model NONE, whose displacements are 0.
-void SessionPipeline::MakeStill()
+void SessionPipeline::MakeUndeformedMesh()
 {
-  this->Still = MakeLattice(this->Volume, 2);
+  this->UndeformedMesh = MakeLattice(this->Volume, 2);
   vtkNew<vtkFloatArray> none;
   none->SetName("Displacement");
   none->SetNumberOfComponents(3);
-  none->SetNumberOfTuples(this->Still->GetNumberOfPoints());
+  none->SetNumberOfTuples(this->UndeformedMesh->GetNumberOfPoints());
   none->Fill(0.0);
-  this->Still->GetPointData()->SetVectors(none);
+  this->UndeformedMesh->GetPointData()->SetVectors(none);
 }
 
-void SessionPipeline::TakeRestMesh()
+void SessionPipeline::MakeRestMesh()
 {
   this->IsMeshOfElements = this->Model == Session::FINITE_ELEMENTS;
   // Finite elements add nodes in the middle of edges, so that half of the nodes are sufficient.
@@ -112,7 +112,8 @@ vtkAlgorithm* SessionPipeline::GetModelFilter()
 vtkDataSet* SessionPipeline::GetDeformation()
 {
   vtkAlgorithm* filter = this->GetModelFilter();
-  return filter ? vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0)) : this->Still.Get();
+  return filter ? vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))
+                : this->UndeformedMesh.Get();
 }
 
 vtkIdType SessionPipeline::GetNumberOfMovedVoxels()
@@ -153,7 +154,7 @@ void SessionPipeline::SetModel(int model)
     this->Undone = undone;
     throw;
   }
-  this->Push(change);
+  this->AddAction(change);
 }
 
 void SessionPipeline::SetLattice(int nodes)
@@ -164,7 +165,7 @@ void SessionPipeline::SetLattice(int nodes)
   }
   const int former = this->NumberOfNodes;
   this->NumberOfNodes = nodes;
-  this->TakeRestMesh();
+  this->MakeRestMesh();
   try
   {
     if (this->GetElastic())
@@ -175,7 +176,7 @@ void SessionPipeline::SetLattice(int nodes)
   catch (...) // for example, a handle holds no node of this lattice
   {
     this->NumberOfNodes = former;
-    this->TakeRestMesh();
+    this->MakeRestMesh();
     this->Rebuild();
     throw;
   }
@@ -185,7 +186,7 @@ void SessionPipeline::Connect()
 {
   if (this->IsMeshOfElements != (this->Model == Session::FINITE_ELEMENTS))
   {
-    this->TakeRestMesh();
+    this->MakeRestMesh();
   }
   vtkElasticDeformation* elastic = this->GetElastic();
   this->Resampler->SetOpenSplits(elastic != nullptr);
@@ -205,7 +206,7 @@ void SessionPipeline::Connect()
   }
   else
   {
-    this->Resampler->SetDeformationData(this->Still);
+    this->Resampler->SetDeformationData(this->UndeformedMesh);
   }
 }
 

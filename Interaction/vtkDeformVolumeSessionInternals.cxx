@@ -67,9 +67,9 @@ bool vtkDeformVolumeSession::vtkInternals::RunOnce()
   double begin = GetSeconds();
   for (SessionEvent& event : events)
   {
-    this->Make(std::move(event), errors);
+    this->ProcessAndRecord(std::move(event), errors);
   }
-  this->Make({ SessionEvent::STEP, {} }, errors);
+  this->ProcessAndRecord({ SessionEvent::STEP, {} }, errors);
   sampling.Factor = this->IsMoving ? sampling.Factor : 1;
   state.SimulationTime = GetSeconds() - begin;
 
@@ -105,7 +105,7 @@ bool vtkDeformVolumeSession::vtkInternals::RunOnce()
   return this->IsMoving;
 }
 
-void vtkDeformVolumeSession::vtkInternals::Make(
+void vtkDeformVolumeSession::vtkInternals::ProcessAndRecord(
   SessionEvent event, std::vector<std::string>& errors)
 {
   try

@@ -80,7 +80,7 @@ public:
 
   // Processes and records an event. Failed events are recorded, too, because a failed step moves
   // handles back. In a replay, the same events fail again.
-  void Make(deformvolume::SessionEvent event, std::vector<std::string>& errors);
+  void ProcessAndRecord(deformvolume::SessionEvent event, std::vector<std::string>& errors);
 
   void Begin(vtkImageData* volume, vtkUnstructuredGrid* mesh);
 
@@ -92,7 +92,7 @@ public:
     std::vector<std::string> errors; // not reported a second time
     for (std::size_t i = 0; i < events.size(); ++i)
     {
-      this->Make(events[i], errors);
+      this->ProcessAndRecord(events[i], errors);
       progress(static_cast<double>(i + 1) / static_cast<double>(events.size()));
     }
   }

@@ -316,7 +316,8 @@ MUTATIONS = {
     "springs-flat": ("Kernels/MassSpring/MassSpringResults.cxx", "hasStress = !IsFlat(results.Determinant);",
                      "hasStress = true;", [SPRINGS_AT_REST]),
     "springs-given-up": ("Kernels/MassSpring/MassSpringModel.cxx",
-                         "  watch.Ask();\n  auto network", "  watch.Ask();\n  this->Forget();\n  auto network", [ABORTS]),
+                         "  abortCheck.Check();\n  auto network",
+                         "  abortCheck.Check();\n  this->Forget();\n  auto network", [ABORTS]),
     "box-overshoot": ("Kernels/Cutting/DeformedMeshPositions.cxx", "(most * (1.0 + rounding) + rounding)", "(rounding)",
                       [DEFORMED_CUTTING]),
     "box-changes": ("Kernels/Cutting/DeformedFieldPositions.cxx", " - first - 1, 0)", " - first, 0)",
@@ -546,7 +547,7 @@ MUTATIONS = {
                      "this->Array->GetReferenceCount() > 2", [PIPELINES]),
     "outputs-written": ("Filters/Output/OutputArrays.cxx", "this->Array->GetMTime() == this->Modified &&", "",
                         [PIPELINES]),
-    "changed-factor": ("Filters/DeformVolume/vtkDeformVolumeFilterRequests.cxx", "if (!hasComparableOutput)",
+    "changed-factor": ("Filters/DeformVolume/vtkDeformVolumeFilterExecution.cxx", "if (!hasComparableOutput)",
                        "if (false)", ["Cxx.TestDeformSamplingFactor"]),
     # The plugin.
     "plugin-command": ("Plugin/CarveVolume.xml", 'command="SetSmoothBoundary"', 'command="SetAccumulate"', [PROPERTIES]),

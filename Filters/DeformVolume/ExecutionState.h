@@ -97,7 +97,7 @@ struct ExecutionState
   // Versions of the mapping and of the vectors for which WarnOfFading() was called last.
   std::pair<std::uint64_t, std::uint64_t> VersionsOfFading;
   // The last warning about the fading of a field.
-  std::string FaultOfFading;
+  std::string FadingWarning;
 
   // Version of the vectors for which inverted tetrahedra of an inverse field were counted, and
   // their number.

@@ -260,7 +260,8 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::GetDeformedBounds(
   {
     return this->State->Bounds;
   }
-  // The bounds at one time are enough here. HoldTime() and KeepInBounds() add those at other times.
+  // The bounds at one time are enough here. IncludeRequestedTimeInBounds() and
+  // IncludeDataInBounds() add those at other times.
   const std::optional<double> time = deformvolume::FindTime(this->Self, 1, ReferencePort, output);
   std::uint64_t bits = 0;
   if (time)
@@ -290,7 +291,7 @@ deformvolume::Extent vtkDeformVolumeFilter::vtkInternals::FindExtent(
   const deformvolume::Extent needed =
     deformvolume::GetPadded(deformvolume::GetExtentInside(bounds), this->Self->Padding);
   return this->Self->BoundsGranularity > 1
-    ? deformvolume::GetKept(this->State->LastExtent, needed, this->Self->BoundsGranularity)
+    ? deformvolume::GetStableExtent(this->State->LastExtent, needed, this->Self->BoundsGranularity)
     : needed;
 }
 
@@ -324,10 +325,10 @@ deformvolume::Extent vtkDeformVolumeFilter::vtkInternals::GetDeformedExtent(
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::HoldTime(vtkInformation* output)
+void vtkDeformVolumeFilter::vtkInternals::IncludeRequestedTimeInBounds(vtkInformation* output)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  this->ExtentBefore.reset();
+  this->ExtentBeforeGrowth.reset();
   const deformvolume::Ranks ranks;
   const bool isNew = !this->InformationFailure && this->EndsWithVolume() &&
     output->Has(Pipeline::UPDATE_TIME_STEP()) &&
@@ -360,12 +361,12 @@ void vtkDeformVolumeFilter::vtkInternals::HoldTime(vtkInformation* output)
   if (asked == before)
   {
     output->Set(Pipeline::UPDATE_EXTENT(), after.data(), 6);
-    this->ExtentBefore = before;
+    this->ExtentBeforeGrowth = before;
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::AnnounceGrowth()
+void vtkDeformVolumeFilter::vtkInternals::MarkModifiedIfBoundsHaveGrown()
 {
   // vtkMultiTimeStepAlgorithm drops the time steps that it has collected if this filter is modified
   // in between, and then never ends. It gets the new extent in its next update.
@@ -381,11 +382,11 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfTooSmallExtent(vtkInformation* o
 {
   deformvolume::Extent asked;
   output->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), asked.data());
-  if (this->ExtentBefore && asked == *this->ExtentBefore)
+  if (this->ExtentBeforeGrowth && asked == *this->ExtentBeforeGrowth)
   {
     this->WarnOfGrowth();
   }
-  this->ExtentBefore.reset();
+  this->ExtentBeforeGrowth.reset();
 }
 
 //------------------------------------------------------------------------------
@@ -399,7 +400,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfGrowth()
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::KeepInBounds(const deformvolume::Ranks& ranks,
+void vtkDeformVolumeFilter::vtkInternals::IncludeDataInBounds(const deformvolume::Ranks& ranks,
   const ImageGeometry& volume, const DeformationSource& source, vtkInformation* output)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;

@@ -223,34 +223,34 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSourceAtRest(const Im
 deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
   vtkImageData* volume, const std::function<void(deformvolume::Resampling)>& checkMemory) const
 {
-  deformvolume::ResamplerWish wish;
+  deformvolume::ResamplerRequest request;
   switch (this->Self->Resampler)
   {
     case EXACT:
-      wish.Method = deformvolume::Resampling::Exact;
+      request.Method = deformvolume::Resampling::Exact;
       break;
     case MESH_RASTERIZATION:
-      wish.Method = deformvolume::Resampling::MeshRasterization;
+      request.Method = deformvolume::Resampling::MeshRasterization;
       break;
     default:
       break;
   }
   const deformvolume::Deformation& deformation = this->State->Deformation;
-  using Kinds = deformvolume::ResamplerWish::Kinds;
-  wish.Deformation = deformation.IsInverseField() ? Kinds::InverseField
-    : deformation.IsField()                       ? Kinds::ForwardField
-                                                  : Kinds::Mesh;
-  wish.Outside = this->GetOutside();
-  wish.HasSmoothCut = deformvolume::HasCut(volume);
-  wish.NeedsJacobian = this->GetExtraArrays().NeedsJacobian();
-  wish.CountsFolds = this->Self->GenerateFoldCount;
-  if (wish.HasSmoothCut && this->Self->GetNumberOfInputConnections(1) == 0 &&
+  using Kinds = deformvolume::ResamplerRequest::Kinds;
+  request.Deformation = deformation.IsInverseField() ? Kinds::InverseField
+    : deformation.IsField()                          ? Kinds::ForwardField
+                                                     : Kinds::Mesh;
+  request.Outside = this->GetOutside();
+  request.HasSmoothCut = deformvolume::HasCut(volume);
+  request.NeedsJacobian = this->GetExtraArrays().NeedsJacobian();
+  request.CountsFolds = this->Self->GenerateFoldCount;
+  if (request.HasSmoothCut && this->Self->GetNumberOfInputConnections(1) == 0 &&
     this->State->Deformation.IsInverseField())
   {
     throw Error("The resampler MESH_RASTERIZATION cannot do smooth cuts. Set SmoothCut of "
                 "vtkCutVolume to off, or Resampler to EXACT.");
   }
-  const deformvolume::Resampling method = deformvolume::ChooseResampler(wish,
+  const deformvolume::Resampling method = deformvolume::ChooseResampler(request,
     [&](deformvolume::Resampling tried)
     {
       try

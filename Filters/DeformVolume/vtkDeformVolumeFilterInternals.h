@@ -110,16 +110,18 @@ public:
   ///@{
   /// With DEFORMED_BOUNDS the bounds hold the deformed volume at all times requested so far. If the
   /// deformed volume leaves them at the requested time, the bounds grow, and the filter is out of
-  /// date in the next update, in which its consumers get the new extent. HoldTime() is called
-  /// in the pass for time-dependent information, before extents are requested, so that an update of
-  /// this filter alone gives the whole new extent. KeepInBounds() is called in RequestData(), for
-  /// updates without that pass or without a time. Collective.
-  void HoldTime(vtkInformation* output);
-  void KeepInBounds(const deformvolume::Ranks& ranks, const deformvolume::ImageGeometry& volume,
-    const deformvolume::DeformationSource& source, vtkInformation* output);
+  /// date in the next update, in which its consumers get the new extent.
+  /// IncludeRequestedTimeInBounds() is called in the pass for time-dependent information, before
+  /// extents are requested, so that an update of this filter alone gives the whole new extent.
+  /// IncludeDataInBounds() is called in RequestData(), for updates without that pass or without a
+  /// time. Collective.
+  void IncludeRequestedTimeInBounds(vtkInformation* output);
+  void IncludeDataInBounds(const deformvolume::Ranks& ranks,
+    const deformvolume::ImageGeometry& volume, const deformvolume::DeformationSource& source,
+    vtkInformation* output);
   ///@}
   /// Marks the filter as modified if the bounds have grown, so that consumers get the new extent.
-  void AnnounceGrowth();
+  void MarkModifiedIfBoundsHaveGrown();
   /// Warns if the whole extent has grown in this update, but a consumer still requests the previous
   /// one.
   void WarnOfTooSmallExtent(vtkInformation* output);
@@ -140,6 +142,44 @@ public:
   /// Crops a volume that is larger than its whole extent, with a warning. Returns the cropped
   /// volume, or the volume itself.
   vtkImageData* CropToWholeExtent(vtkImageData* volume, vtkInformation* info);
+
+  /// The inputs of an execution.
+  struct Inputs
+  {
+    vtkImageData* Volume = nullptr;       // within its whole extent
+    vtkImageData* MaskedVolume = nullptr; // the image whose masks are used, see ReadArrays()
+    deformvolume::MappedVolume Mapped;
+    deformvolume::DeformationSource Deformation;
+    std::vector<deformvolume::SourceArray> Arrays; // to resample
+
+    deformvolume::VoxelGrid GetVoxelGrid() const
+    {
+      return { this->Mapped.Part, this->Deformation.ToOutput, this->Mapped.Whole.PointExtent };
+    }
+  };
+  /// The results of an execution besides the output.
+  struct Results
+  {
+    deformvolume::DeformReport Report;
+    deformvolume::ExtraArrays::Loss Loss;
+  };
+
+  ///@{
+  /// The steps of an execution: forget the results of the last one; read the inputs; choose the
+  /// device and the resampler (Method of the request); resample into an image. Resample() sets the
+  /// members of the request except the extents and Method. ReadInputs() and ChooseMethod() are
+  /// collective.
+  void ResetResults();
+  Inputs ReadInputs(
+    const deformvolume::Ranks& ranks, vtkInformationVector** input, vtkInformation* output);
+  void ChooseMethod(const deformvolume::Ranks& ranks, const Inputs& inputs,
+    vtkInformation* volumeInfo, vtkInformation* output, deformvolume::DeformRequest& request);
+  Results Resample(const Inputs& inputs, deformvolume::DeformRequest& request, vtkImageData* image);
+  ///@}
+  /// Frees the memory of other states if the memory does not suffice to resample into an extent.
+  /// Throws an Error if it does not suffice then. Outputs of State must be prepared.
+  void CheckMemory(
+    const Inputs& inputs, const deformvolume::Extent& output, deformvolume::Resampling method);
 
   /// Chooses the resampler for a volume and the current deformation, and sets ResamplerInUse.
   /// checkMemory: throws an Error if the memory does not suffice for a resampler.
@@ -166,7 +206,7 @@ public:
     const deformvolume::MappedVolume& mapped, const deformvolume::DeformationSource& source);
 
   /// The requested arrays besides those of the volume.
-  deformvolume::ExtraArraysWish GetExtraArrays() const
+  deformvolume::ExtraArraysRequest GetExtraArrays() const
   {
     return { this->Self->GenerateRestPositions, this->Self->GenerateJacobian,
       this->Self->GenerateFoldCount, this->DensityArrays };
@@ -227,7 +267,7 @@ public:
   /// filter.
   bool BoundsHaveGrown = false;
   /// The whole extent before this update, if it has grown in this update.
-  std::optional<deformvolume::Extent> ExtentBefore;
+  std::optional<deformvolume::Extent> ExtentBeforeGrowth;
 
 private:
   /// Returns false if there was nothing to free.

@@ -5,25 +5,20 @@
 #include "vtkDeformVolumeFilterInternals.h"
 
 #include "InputUpdate.h"
-#include "MaskArray.h"
 #include "OutputExtent.h"
 #include "PipelineGeometry.h"
-#include "VolumeArrays.h"
-#include "WorldBoxes.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkExecutive.h"
-#include "vtkFieldData.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationInformationVectorKey.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationStringKey.h"
 #include "vtkInformationVector.h"
-#include "vtkLogger.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -31,10 +26,8 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
-#include <algorithm>
-#include <cstdint>
+#include <exception>
 
-using deformvolume::DeformationSource;
 using deformvolume::Error;
 using deformvolume::Extent;
 using deformvolume::ImageGeometry;
@@ -52,7 +45,7 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
     result = this->Superclass::ProcessRequest(request, input, output);
     if (request->Has(Pipeline::REQUEST_TIME_DEPENDENT_INFORMATION()))
     {
-      this->Internals->HoldTime(outInfo);
+      this->Internals->IncludeRequestedTimeInBounds(outInfo);
     }
     done = true;
   };
@@ -269,191 +262,5 @@ int vtkDeformVolumeFilter::RequestUpdateExtent(
   {
     deformvolume::UpdateRequested(this, vtkInternals::ReferencePort, input, ranks);
   }
-  return 1;
-}
-
-//------------------------------------------------------------------------------
-int vtkDeformVolumeFilter::RequestData(
-  vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
-{
-  vtkInformation* outInfo = output->GetInformationObject(0);
-  vtkImageData* image = vtkImageData::GetData(outInfo);
-  // If this execution fails, no results of an earlier one may remain.
-  image->Initialize();
-  const bool hasComparableOutput = this->Internals->FactorOfOutput == this->SamplingFactor;
-  this->Internals->FactorOfOutput = 0;
-  this->Internals->Report = {};
-  this->Internals->StaticMappingTime = 0.0;
-  this->NumberOfInvertedTetrahedra = this->NumberOfFlatTetrahedra = this->NumberOfCoveredVoxels = 0;
-  const Extent nothing{ { 0, -1, 0, -1, 0, -1 } };
-  std::copy(nothing.begin(), nothing.end(), this->ChangedExtent);
-  if (this->Internals->Execution.HasFailed())
-  {
-    return 0; // RequestUpdateExtent() has failed, which the executive ignores
-  }
-  this->Internals->SelectState();
-  deformvolume::ExecutionState& state = *this->Internals->State;
-  const deformvolume::Ranks ranks;
-  vtkImageData* volume = vtkImageData::GetData(input[0]);
-  deformvolume::MappedVolume mapped;
-  ranks.Attempt(
-    [&]
-    {
-      deformvolume::CheckTimes(vtkInternals::ReferencePort, input, outInfo);
-      vtkInformation* volumeInfo = input[0]->GetInformationObject(0);
-      this->Internals->ForgetModifiedImage();
-      volume = this->Internals->CropToWholeExtent(volume, volumeInfo);
-      mapped = this->Internals->GetMappedVolume(volume, volumeInfo);
-    });
-  const ImageGeometry& geometry = mapped.Whole;
-  this->Internals->WarnOfTooSmallExtent(outInfo);
-  this->Internals->WarnOfReference();
-  const DeformationSource source = this->Internals->ReadDeformation(
-    ranks, geometry, vtkDataObject::GetData(input[1]), vtkDataObject::GetData(input[2]));
-  deformvolume::Deformation& deformation = state.Deformation;
-  this->Internals->KeepInBounds(ranks, geometry, source, outInfo);
-
-  vtkImageData* maskedVolume = nullptr;
-  std::vector<deformvolume::SourceArray> arrays;
-  ranks.Attempt(
-    [&] { maskedVolume = this->Internals->ReadArrays(volume, mapped, source, arrays); });
-
-  deformvolume::DeformRequest request;
-  outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), request.OutputExtent.data());
-  const vtkIdType numberOfPoints = deformvolume::GetNumberOfPoints(request.OutputExtent);
-  if (numberOfPoints == 0 && !ranks.AreMany())
-  {
-    return 1;
-  }
-  deformvolume::VoxelGrid voxelGrid{ mapped.Part, source.ToOutput, geometry.PointExtent };
-  deformvolume::DeviceSession& device = state.Device;
-  const std::vector<deformvolume::VolumeArray> described =
-    deformvolume::MakeVolumeArrays(arrays, this->BackgroundValue);
-  Extent whole;
-  outInfo->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
-  request.WholeOutputExtent = whole;
-  request.Interpolation = this->Interpolation == CUBIC_INTERPOLATION
-    ? deformvolume::Interpolation::Cubic
-    : deformvolume::Interpolation::Linear;
-  std::uint64_t heldBytes = 0;
-  const std::function<void(const Extent&, deformvolume::Resampling)> checkMemory =
-    [&](const Extent& extent, deformvolume::Resampling method)
-  {
-    const bool isMapped =
-      !deformation.IsField() && method != deformvolume::Resampling::MeshRasterization;
-    this->Internals->CheckWithRoom(
-      [&]
-      {
-        device.CheckMemory(voxelGrid, described, extent, heldBytes, deformation,
-          isMapped ? state.Mapping.GetRunBytes(deformation.GetMeshAtRest(), mapped) : 0, method);
-      });
-  };
-  const bool isPart = ranks.IsAny(this->Internals->WantsPart(outInfo));
-  ranks.Attempt(
-    [&]
-    {
-      if (numberOfPoints == 0)
-      {
-        return;
-      }
-      this->DeviceInUse = this->Internals->SelectDevice();
-      heldBytes = state.Outputs.Prepare(arrays, numberOfPoints);
-      // The resampler is chosen by the memory that the whole output needs, so that all parts of the
-      // output have the same one. A volume that can be read in parts does not have to fit, even if
-      // this part of the output needs all of it.
-      request.Method = this->Internals->ChooseResampler(maskedVolume,
-        [&](deformvolume::Resampling method)
-        {
-          if (!isPart || !this->Internals->CanTakePart(input[0]->GetInformationObject(0)))
-          {
-            checkMemory(whole, method);
-          }
-        });
-    });
-  if (ranks.IsAny(request.Method == deformvolume::Resampling::MeshRasterization))
-  {
-    request.Method = deformvolume::Resampling::MeshRasterization;
-    this->Internals->SetResamplerInUse(request.Method);
-  }
-  deformvolume::DeformReport report;
-  deformvolume::ExtraArrays::Loss loss;
-  ranks.Attempt(
-    [&]
-    {
-      if (numberOfPoints == 0)
-      {
-        return;
-      }
-      checkMemory(request.OutputExtent, request.Method);
-      state.Extra.Compute(deformation, state.Mapping, mapped, source.ToOutput,
-        this->Internals->GetProgress(0.0, 0.3));
-      device.SetVolume(voxelGrid, maskedVolume, arrays, this->BackgroundValue, deformation,
-        mapped.Outside, request.Method);
-      if (request.Method == deformvolume::Resampling::MeshRasterization)
-      {
-        if (!deformation.IsField())
-        {
-          deformvolume::CheckBoxes(deformation.GetMeshAtRest(), geometry);
-        }
-        device.SetRestMesh(deformation, mapped.Outside);
-      }
-      else
-      {
-        device.SetDeformation(deformation, state.Mapping, mapped, this->OpenSplits,
-          this->Internals->GetProgress(0.0, 0.3));
-      }
-      request.Progress = this->Internals->GetProgress(0.3, 1.0);
-      request.Compiling = this->Internals->GetCompilationReport();
-      if (!request.Progress(0.0))
-      {
-        throw deformvolume::Aborted();
-      }
-
-      const ImageGeometry outputGeometry = this->Internals->GetOutputGeometry(geometry);
-      image->SetExtent(request.OutputExtent.data());
-      deformvolume::SetTransform(image, outputGeometry);
-      image->GetFieldData()->ShallowCopy(volume->GetFieldData());
-      state.Outputs.Make(arrays, request);
-      // Samples that folds hide are counted only if the whole output is resampled.
-      request.Incremental =
-        this->Incremental && !this->GenerateFoldCount && this->Internals->DensityArrays.empty();
-      request.FoldCounts = state.Extra.MakeFoldCounts(numberOfPoints);
-      request.MayStayOnDevice = this->OutputOnDevice;
-
-      report = device.Deform(request);
-      state.Outputs.Give(report, image);
-      deformvolume::CopyRoles(volume->GetPointData(), image->GetPointData(), arrays);
-      loss = state.Extra.Finish(deformation, mapped.Outside, this->BackgroundValue, image);
-    });
-  if (numberOfPoints > 0)
-  {
-    this->Internals->TakeReport(report, request.Method);
-    this->Internals->WarnOfSplits(maskedVolume);
-    this->Internals->WarnOfFading(mapped, whole);
-    this->Internals->WarnOfLoss(loss);
-  }
-  this->Internals->AddUpCounts(ranks);
-  const std::uint64_t pointsOfRanks = ranks.GetSum(static_cast<std::uint64_t>(numberOfPoints));
-  if (numberOfPoints == 0)
-  {
-    return 1;
-  }
-  this->Internals->KeepOutputs(report, outInfo);
-  vtkVLogF(
-    vtkLogger::VERBOSITY_TRACE, "%s:\n%s", vtkLogIdentifier(this), this->GetSummary().c_str());
-  if (!hasComparableOutput)
-  {
-    std::copy(request.OutputExtent.begin(), request.OutputExtent.end(), this->ChangedExtent);
-  }
-  this->Internals->FactorOfOutput = this->SamplingFactor;
-  // The pieces of the ranks share planes. Together they have at least as many points as the whole
-  // output.
-  const bool isWhole =
-    pointsOfRanks >= static_cast<std::uint64_t>(deformvolume::GetNumberOfPoints(whole));
-  if (this->NumberOfCoveredVoxels == 0 && isWhole)
-  {
-    this->Internals->WarnOfNothing();
-  }
-  deformvolume::SetTimeStep(image, outInfo, { vtkDataObject::GetData(input[1]), volume });
   return 1;
 }

@@ -85,11 +85,11 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfInputs(vtkImageData* volume,
   {
     auto* const field = vtkImageData::SafeDownCast(source.Shape);
     warnings.insert(field
-        ? deformvolume::FindFaultOfSize(deformvolume::GetGeometry(field), mapped.Whole)
-        : deformvolume::FindFaultOfSize(deformation.GetMeshAtRest(), mapped.Whole));
+        ? deformvolume::GetSizeWarning(deformvolume::GetGeometry(field), mapped.Whole)
+        : deformvolume::GetSizeWarning(deformation.GetMeshAtRest(), mapped.Whole));
     if (HasFloats(source.GetRestParts()))
     {
-      warnings.insert(deformvolume::DescribeRounding(deformation.GetMeshAtRest(), mapped.Whole));
+      warnings.insert(deformvolume::GetRoundingWarning(deformation.GetMeshAtRest(), mapped.Whole));
     }
   }
   warnings.insert(deformvolume::DescribeIgnored(source.ShapeParts));
@@ -186,7 +186,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(
   }
   this->State->VersionsOfFading = versions;
   const std::string text =
-    deformvolume::FindFaultOfFading(links, mesh.GetTetrahedra(), mesh.GetNodeDisplacements(),
+    deformvolume::GetFadingWarning(links, mesh.GetTetrahedra(), mesh.GetNodeDisplacements(),
       this->GetOutputGeometry(mapped.Whole).Spacing, mapped.Outside.FadeDistance);
   if (!text.empty())
   {
@@ -201,14 +201,14 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfFadingField(
   const deformvolume::Deformation& deformation = this->State->Deformation;
   const deformvolume::Extent& moved =
     deformation.IsInverseField() ? output : mapped.Whole.PointExtent;
-  const std::string fault = deformvolume::FindFaultOfFading(deformation.GetField(mapped.Outside),
+  const std::string fault = deformvolume::GetFadingWarning(deformation.GetField(mapped.Outside),
     deformvolume::GetBox({ moved, {}, {} }),
     glm::abs(this->GetOutputGeometry(mapped.Whole).Spacing), mapped.Outside.FadeDistance);
-  if (!fault.empty() && fault != this->State->FaultOfFading)
+  if (!fault.empty() && fault != this->State->FadingWarning)
   {
     vtkWarningWithObjectMacro(this->Self, << fault);
   }
-  this->State->FaultOfFading = fault;
+  this->State->FadingWarning = fault;
 }
 
 //------------------------------------------------------------------------------

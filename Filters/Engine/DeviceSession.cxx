@@ -280,18 +280,18 @@ void DeviceSession::SetMesh(const Deformation& deformation, MappingCache& mappin
   }
   if (openSplits != this->CoincidentNodesAreSent || (openSplits && hasSplit))
   {
-    std::vector<std::int32_t> places;
+    std::vector<std::int32_t> coincident;
     bool isSplit = false;
     if (openSplits)
     {
-      places = FindCoincidentPoints(mesh.GetPoints());
-      for (std::size_t node = 0; node < places.size() && !isSplit; ++node)
+      coincident = FindCoincidentPoints(mesh.GetPoints());
+      for (std::size_t node = 0; node < coincident.size() && !isSplit; ++node)
       {
-        isSplit = static_cast<std::size_t>(places[node]) != node;
+        isSplit = static_cast<std::size_t>(coincident[node]) != node;
       }
     }
     this->Known = false;
-    this->Deformer.SetCoincidentNodes(isSplit ? places.data() : nullptr);
+    this->Deformer.SetCoincidentNodes(isSplit ? coincident.data() : nullptr);
     this->Known = true;
     this->CoincidentNodesAreSent = openSplits;
   }

@@ -51,15 +51,15 @@ const signed char* GetCoverage(vtkImageData* output)
 
 } // namespace
 
-void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& whole,
+void ExtraArrays::Select(const ExtraArraysRequest& request, const ImageGeometry& whole,
   const Extent& part, const Deformation& deformation, std::vector<SourceArray>& arrays)
 {
-  this->Wish = wish;
+  this->Request = request;
   this->Copies.erase(
     std::remove_if(this->Copies.begin(), this->Copies.end(),
-      [&](const Copy& copy) { return wish.Densities.count(copy.Floats->GetName()) == 0; }),
+      [&](const Copy& copy) { return request.Densities.count(copy.Floats->GetName()) == 0; }),
     this->Copies.end());
-  for (const std::string& name : wish.Densities)
+  for (const std::string& name : request.Densities)
   {
     const auto found = std::find_if(arrays.begin(), arrays.end(),
       [&](const SourceArray& array) { return HasName(array.Array, name); });
@@ -88,7 +88,7 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& whole
         "\", which is the name of an array that the filter generates. Rename or remove it.");
     }
   };
-  if (wish.RestPositions)
+  if (request.RestPositions)
   {
     checkName(POSITIONS);
     std::for_each(POSITION_AXES.begin(), POSITION_AXES.end(), checkName);
@@ -102,16 +102,16 @@ void ExtraArrays::Select(const ExtraArraysWish& wish, const ImageGeometry& whole
   {
     this->Positions = {};
   }
-  if (wish.NeedsJacobian())
+  if (request.NeedsJacobian())
   {
     checkName(JACOBIAN);
   }
-  if (wish.FoldCount)
+  if (request.FoldCount)
   {
     checkName(FOLD_COUNT);
   }
   const vtkIdType voxels = GetNumberOfPoints(part);
-  if (!wish.NeedsJacobian() || deformation.IsInverseField())
+  if (!request.NeedsJacobian() || deformation.IsInverseField())
   {
     this->Jacobians = nullptr;
     this->MeshJacobians = VoxelJacobians();
@@ -210,22 +210,22 @@ void ExtraArrays::Compute(const Deformation& deformation, MappingCache& mapping,
 ExtraArrays::Loss ExtraArrays::Finish(const Deformation& deformation, const OutsideVoxels& outside,
   double background, vtkImageData* output)
 {
-  if (this->Wish.RestPositions)
+  if (this->Request.RestPositions)
   {
     this->FinishRestPositions(background, output);
   }
-  if (this->Wish.FoldCount)
+  if (this->Request.FoldCount)
   {
     this->FinishFoldCounts(output);
   }
-  return this->Wish.NeedsJacobian()
+  return this->Request.NeedsJacobian()
     ? this->FinishDensities(deformation, outside, background, output)
     : Loss();
 }
 
 std::uint32_t* ExtraArrays::MakeFoldCounts(vtkIdType numberOfPoints)
 {
-  if (!this->Wish.FoldCount)
+  if (!this->Request.FoldCount)
   {
     return nullptr;
   }
@@ -319,7 +319,7 @@ ExtraArrays::Loss ExtraArrays::FinishDensities(const Deformation& deformation,
     pointData->AddArray(made);
   }
   const auto* jacobians = static_cast<const float*>(jacobian->GetVoidPointer(0));
-  for (const std::string& name : this->Wish.Densities)
+  for (const std::string& name : this->Request.Densities)
   {
     // Do not change the resampled array: the next update may write only a part of it.
     vtkDataArray* resampled = pointData->GetArray(name.c_str());
@@ -333,7 +333,7 @@ ExtraArrays::Loss ExtraArrays::FinishDensities(const Deformation& deformation,
           0.0F, static_cast<float*>(divided->GetVoidPointer(0)));
     pointData->AddArray(divided);
   }
-  if (!this->Wish.Jacobian)
+  if (!this->Request.Jacobian)
   {
     pointData->RemoveArray(JACOBIAN);
   }

@@ -31,7 +31,7 @@ namespace deformvolume
 {
 
 /// The requested arrays of an output besides those of the volume.
-struct ExtraArraysWish
+struct ExtraArraysRequest
 {
   bool RestPositions = false;
   bool Jacobian = false;
@@ -52,7 +52,7 @@ public:
   /// floats. whole: the geometry of the volume. part: its voxels that the arrays have. Throws an
   /// Error if a density array does not exist or is categorical, or if an array of the volume has
   /// the name of an array that is made here.
-  void Select(const ExtraArraysWish& wish, const ImageGeometry& whole, const Extent& part,
+  void Select(const ExtraArraysRequest& request, const ImageGeometry& whole, const Extent& part,
     const Deformation& deformation, std::vector<SourceArray>& arrays);
 
   /// Computes the Jacobians of the voxels if they were selected. mapping: is updated if it is
@@ -82,7 +82,7 @@ private:
     double background, vtkImageData* output);
   vtkDataArray* FindFloats(vtkDataArray* density);
 
-  ExtraArraysWish Wish;
+  ExtraArraysRequest Request;
   ImageGeometry PositionsGeometry;
   glm::dvec3 PositionsOrigin{ 0.0 }; // see GetPositionsOrigin()
   // One array for each axis: kernels are faster with arrays of one component.

@@ -31,7 +31,7 @@ vtkSmartPointer<vtkDataArray> MakeMask(vtkIdType numberOfTuples)
 // Whether an array of an earlier output can be used for an array like `wanted`, which has no
 // tuples. The memory of the array may be smaller than needed, or up to twice as large, since the
 // size of the output changes with the deformation.
-bool CanServe(vtkDataArray* last, vtkDataArray* wanted, vtkIdType numberOfTuples)
+bool CanReuse(vtkDataArray* last, vtkDataArray* wanted, vtkIdType numberOfTuples)
 {
   constexpr vtkIdType mostWaste = 2;
   return std::strcmp(last->GetClassName(), wanted->GetClassName()) == 0 &&
@@ -86,44 +86,43 @@ void CopyDescription(vtkDataArray* array, vtkDataArray* wanted)
 
 } // namespace
 
-bool OutputArrays::Kept::IsAsKept(vtkIdType numberOfTuples) const
+bool OutputArrays::KeptArray::IsUnchanged(vtkIdType numberOfTuples) const
 {
   return this->Array && this->Array->GetNumberOfTuples() == numberOfTuples &&
     GetWritableValues(this->Array) == this->Values && this->Array->GetMTime() == this->Modified &&
     (!this->OnDevice || this->OnDevice->IsRead());
 }
 
-bool OutputArrays::Kept::IsHeldByOthers() const
+bool OutputArrays::KeptArray::IsHeldByOthers() const
 {
   return this->Array && this->Array->GetReferenceCount() > 1;
 }
 
-OutputArrays::Kept& OutputArrays::GetServing(std::size_t array)
+OutputArrays::KeptArray& OutputArrays::GetReusable(std::size_t array)
 {
-  return this->Last[array].IsHeldByOthers() ? this->Older[array] : this->Last[array];
+  return this->Last[array].IsHeldByOthers() ? this->BeforeLast[array] : this->Last[array];
 }
 
-std::uint64_t OutputArrays::GetServingRevision()
+std::uint64_t OutputArrays::GetReusableRevision()
 {
   std::uint64_t revision = 0;
   for (std::size_t i = 0; i < this->Last.size(); ++i)
   {
-    const Kept& serving = this->GetServing(i);
-    if (&serving == &this->Last[i])
+    const KeptArray& reusable = this->GetReusable(i);
+    if (&reusable == &this->Last[i])
     {
       continue; // the last output itself
     }
-    if (!serving.IsAsKept(this->NumberOfTuples) || (revision && serving.Revision != revision))
+    if (!reusable.IsUnchanged(this->NumberOfTuples) || (revision && reusable.Revision != revision))
     {
       return 0;
     }
-    revision = serving.Revision;
+    revision = reusable.Revision;
   }
   return revision;
 }
 
-std::uint64_t OutputArrays::Prepare(
-  const std::vector<SourceArray>& sources, vtkIdType numberOfTuples)
+void OutputArrays::Prepare(const std::vector<SourceArray>& sources, vtkIdType numberOfTuples)
 {
   this->Made.clear();
   this->NumberOfTuples = numberOfTuples;
@@ -133,25 +132,33 @@ std::uint64_t OutputArrays::Prepare(
     wanted.push_back(MakeLike(source.Array, 0));
   }
   wanted.push_back(MakeMask(0));
-  const bool serve = std::equal(this->Last.begin(), this->Last.end(), wanted.begin(), wanted.end(),
-    [=](const Kept& last, const auto& array)
-    { return last.Array && CanServe(last.Array, array, numberOfTuples); });
-  if (!serve)
+  const bool areReusable =
+    std::equal(this->Last.begin(), this->Last.end(), wanted.begin(), wanted.end(),
+      [=](const KeptArray& last, const auto& array)
+      { return last.Array && CanReuse(last.Array, array, numberOfTuples); });
+  if (!areReusable)
   {
-    this->Last.assign(wanted.size(), Kept());
+    this->Last.assign(wanted.size(), KeptArray());
   }
-  this->Older.resize(wanted.size());
-  std::uint64_t bytes = 0;
+  this->BeforeLast.resize(wanted.size());
   for (std::size_t i = 0; i < wanted.size(); ++i)
   {
-    Kept& older = this->Older[i];
-    if (!this->Last[i].IsHeldByOthers() || older.IsHeldByOthers() ||
-      (older.Array && !CanServe(older.Array, wanted[i], numberOfTuples)))
+    KeptArray& beforeLast = this->BeforeLast[i];
+    if (!this->Last[i].IsHeldByOthers() || beforeLast.IsHeldByOthers() ||
+      (beforeLast.Array && !CanReuse(beforeLast.Array, wanted[i], numberOfTuples)))
     {
-      older = Kept();
+      beforeLast = KeptArray();
     }
-    const Kept& serving = this->GetServing(i);
-    bytes += serving.Array ? CountBytes(serving.Array, numberOfTuples) : 0;
+  }
+}
+
+std::uint64_t OutputArrays::GetReusableBytes()
+{
+  std::uint64_t bytes = 0;
+  for (std::size_t i = 0; i < this->Last.size(); ++i)
+  {
+    const KeptArray& reusable = this->GetReusable(i);
+    bytes += reusable.Array ? CountBytes(reusable.Array, this->NumberOfTuples) : 0;
   }
   return bytes;
 }
@@ -159,7 +166,7 @@ std::uint64_t OutputArrays::Prepare(
 void OutputArrays::Make(const std::vector<SourceArray>& sources, DeformRequest& request)
 {
   if (std::all_of(this->Last.begin(), this->Last.end(),
-        [this](const Kept& last) { return last.IsAsKept(this->NumberOfTuples); }))
+        [this](const KeptArray& last) { return last.IsUnchanged(this->NumberOfTuples); }))
   {
     for (std::size_t i = 0; i < sources.size(); ++i)
     {
@@ -167,19 +174,20 @@ void OutputArrays::Make(const std::vector<SourceArray>& sources, DeformRequest& 
     }
     request.LastCoverage = static_cast<signed char*>(GetWritableValues(this->Last.back().Array));
   }
-  request.OutputRevision = this->GetServingRevision();
+  request.OutputRevision = this->GetReusableRevision();
   for (std::size_t i = 0; i <= sources.size(); ++i)
   {
     const bool isMask = i == sources.size();
-    Kept& serving = this->GetServing(i);
-    request.HeldRevisions.push_back(serving.IsAsKept(this->NumberOfTuples) ? serving.Revision : 0);
-    vtkSmartPointer<vtkDataArray> made = serving.Array;
+    KeptArray& reusable = this->GetReusable(i);
+    request.HeldRevisions.push_back(
+      reusable.IsUnchanged(this->NumberOfTuples) ? reusable.Revision : 0);
+    vtkSmartPointer<vtkDataArray> made = reusable.Array;
     if (made)
     {
       if (made->GetNumberOfTuples() != this->NumberOfTuples)
       {
         SetSize(made, this->NumberOfTuples); // loses the values of the earlier output
-        serving.Values = nullptr;
+        reusable.Values = nullptr;
       }
       CopyDescription(made, isMask ? MakeMask(0) : MakeLike(sources[i].Array, 0));
     }
@@ -226,9 +234,9 @@ void OutputArrays::Keep(const DeformReport& report)
   {
     if (this->Made[i] != this->Last[i].Array)
     {
-      this->Older[i] = this->Last[i];
+      this->BeforeLast[i] = this->Last[i];
     }
-    Kept& last = this->Last[i];
+    KeptArray& last = this->Last[i];
     last.Array = std::exchange(this->Made[i], nullptr);
     last.Array->Modified(); // invalidates ranges of earlier values
     last.Values = GetWritableValues(last.Array);
@@ -242,14 +250,14 @@ void OutputArrays::Keep(const DeformReport& report)
 void OutputArrays::Forget()
 {
   this->Last.clear();
-  this->Older.clear();
+  this->BeforeLast.clear();
   this->Made.clear();
 }
 
 int OutputArrays::GetNumberOfUnread() const
 {
   return static_cast<int>(std::count_if(this->Last.begin(), this->Last.end(),
-    [](const Kept& last) { return last.OnDevice && last.OnDevice->IsOnDevice(); }));
+    [](const KeptArray& last) { return last.OnDevice && last.OnDevice->IsOnDevice(); }));
 }
 
 } // namespace deformvolume

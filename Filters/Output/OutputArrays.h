@@ -25,9 +25,10 @@ class OutputArrays
 {
 public:
   /// Drops kept arrays that cannot be used again for arrays like the sources with this number of
-  /// tuples. Returns the size of the others in bytes. The output must not hold the arrays when this
-  /// is called.
-  std::uint64_t Prepare(const std::vector<SourceArray>& sources, vtkIdType numberOfTuples);
+  /// tuples. The output must not hold the arrays when this is called.
+  void Prepare(const std::vector<SourceArray>& sources, vtkIdType numberOfTuples);
+  /// Returns the size of the other kept arrays in bytes, after Prepare().
+  std::uint64_t GetReusableBytes();
 
   /// Makes an array like each of the sources, and vtkValidPointMask. Sets the memory of these
   /// arrays in the request, and that of the last output if nobody has changed it. Call this after
@@ -49,7 +50,7 @@ public:
 
 private:
   // An array of an output, and its state when it was kept.
-  struct Kept
+  struct KeptArray
   {
     vtkSmartPointer<vtkDataArray> Array;
     const void* Values = nullptr;
@@ -58,19 +59,19 @@ private:
     std::shared_ptr<DeviceOutput> OnDevice; // null: the values are on the host
 
     /// Whether the array has this number of tuples and still the values of the output.
-    bool IsAsKept(vtkIdType numberOfTuples) const;
+    bool IsUnchanged(vtkIdType numberOfTuples) const;
     bool IsHeldByOthers() const;
   };
 
   /// The kept array that is used for an array of the next output; empty if there is none.
-  Kept& GetServing(std::size_t array);
-  /// The revision of the output that the arrays in Older hold, if these are used next; 0 if they
-  /// hold several revisions.
-  std::uint64_t GetServingRevision();
+  KeptArray& GetReusable(std::size_t array);
+  /// The revision of the output that the arrays in BeforeLast hold, if these are used next; 0 if
+  /// they hold several revisions.
+  std::uint64_t GetReusableRevision();
 
   vtkIdType NumberOfTuples = 0;
-  std::vector<Kept> Last;
-  std::vector<Kept> Older; // of the execution before, used if Last is held by others
+  std::vector<KeptArray> Last;
+  std::vector<KeptArray> BeforeLast; // of the execution before, used if Last is held by others
   std::vector<vtkSmartPointer<vtkDataArray>> Made;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FaceNeighbors.h"
 
+#include "AbortCheck.h"
 #include "CountedLists.h"
-#include "Watch.h"
 
 #include <algorithm>
 #include <array>
@@ -41,21 +41,21 @@ std::array<std::int32_t, 3> GetSortedNodes(const Tetrahedron& tetrahedron, std::
 } // namespace
 
 FaceNeighbors::FaceNeighbors(
-  const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes, Watch* watch)
+  const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes, AbortCheck* abortCheck)
   : Next(4 * tetrahedra.size())
 {
-  Watch none(nullptr);
-  Watch& asked = watch ? *watch : none;
+  AbortCheck none(nullptr);
+  AbortCheck& given = abortCheck ? *abortCheck : none;
   // Each node has a list of the faces of which it is the lowest node. The lists are short, so
   // sorting them is fast.
   std::vector<std::size_t> begins;
   std::vector<Entry> entries;
-  Grow(asked, entries, this->Next.size());
+  Grow(given, entries, this->Next.size());
   MakeLists(
     numberOfNodes,
     [&](const auto& take)
     {
-      ForItems(asked, tetrahedra.size(),
+      ForItems(given, tetrahedra.size(),
         [&](std::size_t t)
         {
           for (std::size_t k = 0; k < 4; ++k)
@@ -67,7 +67,7 @@ FaceNeighbors::FaceNeighbors(
         });
     },
     begins, entries);
-  ForItemsInParallel(asked, numberOfNodes,
+  ForItemsInParallel(given, numberOfNodes,
     [&](std::size_t node)
     {
       std::size_t begin = begins[node];

@@ -11,7 +11,7 @@
 namespace deformvolume
 {
 
-class Watch;
+class AbortCheck;
 
 /// The faces of tetrahedra that have the same nodes. Face 4 * t + k is the face of tetrahedron t
 /// that is opposite its node k.
@@ -19,9 +19,9 @@ class FaceNeighbors
 {
 public:
   /// tetrahedra: at most 2^30, with nodes from 0 to numberOfNodes - 1. The time is proportional to
-  /// the numbers of tetrahedra and nodes. watch: checks for an abort; may be null.
-  FaceNeighbors(
-    const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes, Watch* watch = nullptr);
+  /// the numbers of tetrahedra and nodes. abortCheck: checks for an abort; may be null.
+  FaceNeighbors(const std::vector<Tetrahedron>& tetrahedra, std::size_t numberOfNodes,
+    AbortCheck* abortCheck = nullptr);
 
   /// Returns the face of another tetrahedron with the same nodes, or `face` itself if there is
   /// none. More than two faces with the same nodes form a circular list.

@@ -75,7 +75,7 @@ void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0] - 1) *
     static_cast<std::uint64_t>(p.Size[1] - 1) *
     static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin - 1);
-  const bool all = !this->Known || GetMemory(chunk.Joined) != bytes;
+  const bool all = !this->Known || GetMemory(chunk.ResampledTetrahedra) != bytes;
   const VertexCuboids chunkCuboids(p);
   // The cells around a vertex begin at the vertex and one voxel before it.
   const std::vector<cl_uint> cuboids = all
@@ -83,8 +83,9 @@ void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
     : JoinLists(chunkCuboids.Find(this->Vertices, 1), chunkCuboids.Find(this->Cells, 0));
   if (all)
   {
-    Reserve(context, chunk.Joined, bytes);
-    queue.enqueueFillBuffer(chunk.Joined, cl_uchar{ DEFORMVOLUME_ALL_TETRAHEDRA }, 0, bytes);
+    Reserve(context, chunk.ResampledTetrahedra, bytes);
+    queue.enqueueFillBuffer(
+      chunk.ResampledTetrahedra, cl_uchar{ DEFORMVOLUME_ALL_TETRAHEDRA }, 0, bytes);
   }
   if (cuboids.empty())
   {
@@ -100,7 +101,7 @@ void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
     this->HasCoincidentNodes() ? this->CoincidentNodes : source.Other,
     cl_int{ this->HasCoincidentNodes() }, this->WithBoundary ? chunk.Boundary : source.Other,
     cl_int{ this->WithBoundary }, source.Active, cl_int{ source.HasActive }, source.CutRows,
-    source.CutVertices, chunk.Joined, changed, list, p);
+    source.CutVertices, chunk.ResampledTetrahedra, changed, list, p);
   std::vector<cl_uint> flags;
   VertexCuboids::ForAll(context, queue, cuboids, list,
     [&](const VertexCuboids::Launch& launch, std::size_t begin, std::size_t count)

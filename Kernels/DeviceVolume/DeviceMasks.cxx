@@ -86,7 +86,7 @@ void DeviceMasks::SetCoincidentNodes(const std::vector<std::int32_t>& numbers)
     this->States.Forget();
     for (VolumeChunk& chunk : this->Chunks)
     {
-      chunk.Joined = cl::Buffer();
+      chunk.ResampledTetrahedra = cl::Buffer();
     }
   }
 }
@@ -103,7 +103,7 @@ void DeviceMasks::SetBoundary(const MeshBoundary& boundary)
   const std::int64_t layer = static_cast<std::int64_t>(this->Size[0] - 1) * (this->Size[1] - 1);
   for (VolumeChunk& chunk : this->Chunks)
   {
-    chunk.Joined = chunk.Boundary = cl::Buffer();
+    chunk.ResampledTetrahedra = chunk.Boundary = cl::Buffer();
     if (boundary.IsEmpty())
     {
       continue;

@@ -62,7 +62,7 @@ public:
   /// missing mask: not all drivers accept a null pointer.
   const cl::Buffer& GetActive(const VolumeChunk& chunk, const cl::Buffer& other) const
   {
-    return this->Bridges.IsOn() ? chunk.Joined : this->GetGivenActive(chunk, other);
+    return this->Bridges.IsOn() ? chunk.ResampledTetrahedra : this->GetGivenActive(chunk, other);
   }
   const cl::Buffer& GetGivenActive(const VolumeChunk& chunk, const cl::Buffer& other) const
   {

@@ -218,8 +218,8 @@ std::uint64_t DeviceVolume::GetMemory() const
     this->Mapping.GetRecords().GetMemory() + this->Masks.GetCut().GetMemory();
   for (const VolumeChunk& chunk : this->Chunks)
   {
-    bytes += deformvolume::GetMemory(chunk.Boundary, chunk.Joined, chunk.Links, chunk.Runs,
-      chunk.RowRanges, chunk.State, chunk.Blanked, chunk.Active, chunk.Distances);
+    bytes += deformvolume::GetMemory(chunk.Boundary, chunk.ResampledTetrahedra, chunk.Links,
+      chunk.Runs, chunk.RowRanges, chunk.State, chunk.Blanked, chunk.Active, chunk.Distances);
     for (const cl::Buffer& array : chunk.Arrays)
     {
       bytes += deformvolume::GetMemory(array);

@@ -28,7 +28,7 @@ struct VolumeChunk
   cl::Buffer Active;
   cl::Buffer Distances;           // boundary distances, a float per voxel
   cl::Buffer Boundary;            // a byte per cell (BridgeMask.cl); may be null
-  cl::Buffer Joined;              // mask of BridgeMask; may be null
+  cl::Buffer ResampledTetrahedra; // a byte per cell, see BridgeMask; may be null
   std::vector<cl::Buffer> Arrays; // see DeviceArrays::GetBuffers()
 };
 

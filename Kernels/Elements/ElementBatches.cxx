@@ -31,18 +31,19 @@ std::uint64_t SpreadBits(std::uint64_t value)
 // The position of a tetrahedron on a space-filling (Morton) curve, and its number.
 using CurveCode = std::pair<std::uint64_t, std::int32_t>;
 
-// Sorts parts and merges them in pairs: a single sort would run too long without polling the watch.
-void Sort(Watch& watch, std::vector<CurveCode>& codes)
+// Sorts parts and merges them in pairs: a single sort would run too long without a check for an
+// abort.
+void Sort(AbortCheck& abortCheck, std::vector<CurveCode>& codes)
 {
   constexpr std::size_t partsAtOnce = 16;
   const auto at = [&](std::size_t index)
   { return codes.begin() + static_cast<std::ptrdiff_t>(std::min(index, codes.size())); };
   std::size_t size = std::size_t(1) << 14;
-  ForParts(watch, (codes.size() + size - 1) / size, partsAtOnce,
+  ForParts(abortCheck, (codes.size() + size - 1) / size, partsAtOnce,
     [&](std::size_t part) { std::sort(at(part * size), at((part + 1) * size)); });
   for (; size < codes.size(); size *= 2)
   {
-    ForParts(watch, (codes.size() + 2 * size - 1) / (2 * size), partsAtOnce,
+    ForParts(abortCheck, (codes.size() + 2 * size - 1) / (2 * size), partsAtOnce,
       [&](std::size_t part)
       {
         const std::size_t begin = 2 * part * size;
@@ -52,7 +53,7 @@ void Sort(Watch& watch, std::vector<CurveCode>& codes)
 }
 
 // Orders tetrahedra along a Morton curve, so that the tetrahedra of a chunk are near each other.
-std::vector<std::int32_t> OrderTetrahedra(Watch& watch, const ElasticBody& body)
+std::vector<std::int32_t> OrderTetrahedra(AbortCheck& abortCheck, const ElasticBody& body)
 {
   glm::dvec3 lower(std::numeric_limits<double>::max());
   glm::dvec3 upper(-std::numeric_limits<double>::max());
@@ -64,7 +65,7 @@ std::vector<std::int32_t> OrderTetrahedra(Watch& watch, const ElasticBody& body)
   const glm::dvec3 size = upper - lower;
   const double scale = ((1 << 20) - 1) / std::max({ size.x, size.y, size.z });
   std::vector<CurveCode> codes(body.Tetrahedra.size());
-  ForItemsInParallel(watch, codes.size(),
+  ForItemsInParallel(abortCheck, codes.size(),
     [&](std::size_t t)
     {
       glm::dvec3 center(0.0);
@@ -77,7 +78,7 @@ std::vector<std::int32_t> OrderTetrahedra(Watch& watch, const ElasticBody& body)
       codes[t] = { code(center.x) | code(center.y) << 1 | code(center.z) << 2,
         static_cast<std::int32_t>(t) };
     });
-  Sort(watch, codes);
+  Sort(abortCheck, codes);
   std::vector<std::int32_t> order(codes.size());
   std::transform(
     codes.begin(), codes.end(), order.begin(), [](const CurveCode& code) { return code.second; });
@@ -152,7 +153,7 @@ void SetLane(
 
 // Gives each chunk the first color that no chunk with a common node has.
 std::vector<std::vector<std::uint32_t>> ColorChunks(
-  Watch& watch, const ElementBatches& batches, std::size_t nodes)
+  AbortCheck& abortCheck, const ElementBatches& batches, std::size_t nodes)
 {
   constexpr std::size_t largestNumber = 64;
   std::vector<std::uint64_t> colorsOfNode(nodes, 0);
@@ -160,7 +161,7 @@ std::vector<std::vector<std::uint32_t>> ColorChunks(
   std::vector<std::uint32_t> others;
   for (std::size_t chunk = 0; chunk < batches.GetNumberOfChunks(); ++chunk)
   {
-    watch.Ask();
+    abortCheck.Check();
     const std::size_t begin = chunk * ElementBatches::ChunkSize;
     const std::size_t end = std::min(batches.Batches.size(), begin + ElementBatches::ChunkSize);
     const auto forNodes = [&](auto&& body)
@@ -201,15 +202,15 @@ std::vector<std::vector<std::uint32_t>> ColorChunks(
 
 } // namespace
 
-ElementBatches MakeElementBatches(Watch& watch, const ElasticBody& body)
+ElementBatches MakeElementBatches(AbortCheck& abortCheck, const ElasticBody& body)
 {
   ElementBatches result;
-  const std::vector<std::int32_t> order = OrderTetrahedra(watch, body);
+  const std::vector<std::int32_t> order = OrderTetrahedra(abortCheck, body);
   const std::size_t number = (order.size() + NumberOfLanes - 1) / NumberOfLanes;
-  Grow(watch, result.Batches, number);
+  Grow(abortCheck, result.Batches, number);
   result.Tetrahedra.assign(number * NumberOfLanes, -1);
   std::copy(order.begin(), order.end(), result.Tetrahedra.begin());
-  ForItemsInParallel(watch, result.Tetrahedra.size(),
+  ForItemsInParallel(abortCheck, result.Tetrahedra.size(),
     [&](std::size_t i)
     {
       const bool isThere = result.Tetrahedra[i] >= 0;
@@ -217,7 +218,7 @@ ElementBatches MakeElementBatches(Watch& watch, const ElasticBody& body)
         isThere ? result.Tetrahedra[i] : order.back(), isThere);
     });
   SetMaterials(result, body);
-  result.Colors = ColorChunks(watch, result, body.Points.size());
+  result.Colors = ColorChunks(abortCheck, result, body.Points.size());
   return result;
 }
 

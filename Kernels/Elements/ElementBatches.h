@@ -2,10 +2,10 @@
 #ifndef DeformVolumeElementBatches_h
 #define DeformVolumeElementBatches_h
 
+#include "AbortCheck.h"
 #include "ElasticBody.h"
 #include "Lanes.h"
 #include "QuadraticTetrahedron.h"
-#include "Watch.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -67,7 +67,7 @@ struct ElementBatches
 };
 
 /// Makes batches of the tetrahedra of a body, which must have mid-side nodes.
-ElementBatches MakeElementBatches(Watch& watch, const ElasticBody& body);
+ElementBatches MakeElementBatches(AbortCheck& abortCheck, const ElasticBody& body);
 
 /// Chooses the pieces of a body whose tetrahedra are active. The tetrahedra of other pieces exert
 /// no forces, and do not count as inverted. isActive: for each piece.

@@ -49,24 +49,24 @@ private:
 
 } // namespace
 
-EquilibriumSolver::EquilibriumSolver(Watch& watch, const ElasticBody& body)
+EquilibriumSolver::EquilibriumSolver(AbortCheck& abortCheck, const ElasticBody& body)
   : Body(body)
-  , Pieces(FindPieces(body, &watch))
+  , Pieces(FindPieces(body, &abortCheck))
   , ActivePieces(static_cast<std::size_t>(Pieces.NumberOfPieces), true)
   , Sliding(body)
-  , Elements(watch, body)
+  , Elements(abortCheck, body)
   , Tangent(this->Body.Points, this->Elements, this->Sliding)
 {
   this->Last.Displacements.assign(body.Points.size(), glm::dvec3(0.0));
-  this->Tangent.SetPattern(watch, MakeNodePattern(watch, body));
-  this->Elements.SetPattern(watch, this->Tangent.GetMatrix().GetPattern());
-  this->UpdateScale(watch);
+  this->Tangent.SetPattern(abortCheck, MakeNodePattern(abortCheck, body));
+  this->Elements.SetPattern(abortCheck, this->Tangent.GetMatrix().GetPattern());
+  this->UpdateScale(abortCheck);
 }
 
-void EquilibriumSolver::UpdateScale(Watch& watch)
+void EquilibriumSolver::UpdateScale(AbortCheck& abortCheck)
 {
   this->Volumes.resize(this->Body.Tetrahedra.size());
-  ForItemsInParallel(watch, this->Volumes.size(),
+  ForItemsInParallel(abortCheck, this->Volumes.size(),
     [&](std::size_t t)
     { this->Volumes[t] = QuadraticTetrahedron::GetGaussVolumes(this->Body, t); });
   double total = 0.0;
@@ -101,8 +101,8 @@ void EquilibriumSolver::SetMaterials(const std::vector<ElasticMaterial>& materia
 {
   this->Body.Materials = materials;
   this->Elements.SetMaterials(this->Body);
-  Watch watch(nullptr);
-  this->UpdateScale(watch);
+  AbortCheck abortCheck(nullptr);
+  this->UpdateScale(abortCheck);
   this->Forget();
 }
 
@@ -133,8 +133,8 @@ void EquilibriumSolver::Forget()
 std::vector<glm::dvec3> EquilibriumSolver::GetForces() const
 {
   std::vector<glm::dvec3> forces;
-  Watch watch(nullptr);
-  this->Elements.FindForces(watch, this->Last.Displacements, forces);
+  AbortCheck abortCheck(nullptr);
+  this->Elements.FindForces(abortCheck, this->Last.Displacements, forces);
   return forces;
 }
 
@@ -144,17 +144,17 @@ std::vector<ElementResults> EquilibriumSolver::GetElementResults() const
 }
 
 void EquilibriumSolver::Evaluate(
-  Watch& watch, const EquilibriumProblem& problem, State& state) const
+  AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state) const
 {
-  state.Sums = this->Elements.FindForces(watch, state.Displacements, state.Forces);
-  this->FindPotential(watch, problem, state);
+  state.Sums = this->Elements.FindForces(abortCheck, state.Displacements, state.Forces);
+  this->FindPotential(abortCheck, problem, state);
 }
 
 void EquilibriumSolver::FindPotential(
-  Watch& watch, const EquilibriumProblem& problem, State& state) const
+  AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state) const
 {
   state.Potential = state.Sums.Energy -
-    SumOfParts(watch, problem.Loads.size(),
+    SumOfParts(abortCheck, problem.Loads.size(),
       [&](std::size_t begin, std::size_t end)
       {
         double sum = 0.0;
@@ -167,18 +167,19 @@ void EquilibriumSolver::FindPotential(
 }
 
 void EquilibriumSolver::UpdateTangent(
-  Watch& watch, const EquilibriumProblem& problem, const State& state)
+  AbortCheck& abortCheck, const EquilibriumProblem& problem, const State& state)
 {
   if (this->HasTangent && problem.IsInteractive)
   {
     return;
   }
-  this->Tangent.Update(watch, state.Displacements, this->ClampedSteps > 0);
+  this->Tangent.Update(abortCheck, state.Displacements, this->ClampedSteps > 0);
   this->HasTangent = true;
   this->IsTangentOld = false;
 }
 
-void EquilibriumSolver::Untangle(Watch& watch, const EquilibriumProblem& problem, State& state)
+void EquilibriumSolver::Untangle(
+  AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state)
 {
   // Continue only while the energy falls by at least this fraction of the strain energy.
   constexpr double leastFall = 0.01;
@@ -186,9 +187,9 @@ void EquilibriumSolver::Untangle(Watch& watch, const EquilibriumProblem& problem
   std::vector<unsigned char> isInverted;
   while (state.Sums.Inverted > 0)
   {
-    this->Elements.FindInvertedNodes(watch, state.Displacements, isInverted);
+    this->Elements.FindInvertedNodes(abortCheck, state.Displacements, isInverted);
     this->Trial.Displacements = state.Displacements;
-    ForRows(watch, isInverted.size(),
+    ForRows(abortCheck, isInverted.size(),
       [&](std::size_t begin, std::size_t end)
       {
         for (std::size_t node = begin; node < end; ++node)
@@ -209,7 +210,7 @@ void EquilibriumSolver::Untangle(Watch& watch, const EquilibriumProblem& problem
             this->Sliding.Project(node, (sum - state.Displacements[node]) / neighbors);
         }
       });
-    this->Evaluate(watch, problem, this->Trial);
+    this->Evaluate(abortCheck, problem, this->Trial);
     if (!(this->Trial.Potential < state.Potential - leastFall * state.Sums.Energy))
     {
       return;
@@ -226,7 +227,7 @@ double EquilibriumSolver::ChooseTolerance(const EquilibriumProblem& problem, dou
                                : problem.Limits.LinearTolerance;
 }
 
-bool EquilibriumSolver::SolveLinear(Watch& watch, const EquilibriumProblem& problem,
+bool EquilibriumSolver::SolveLinear(AbortCheck& abortCheck, const EquilibriumProblem& problem,
   const State& state, double tolerance, EquilibriumReport& report)
 {
   for (std::size_t node = 0; node < problem.IsFree.size(); ++node)
@@ -238,7 +239,7 @@ bool EquilibriumSolver::SolveLinear(Watch& watch, const EquilibriumProblem& prob
   }
   this->Sliding.Project(this->RightHandSide);
   const ConjugateGradients::Result result =
-    this->Tangent.Solve(watch, problem.IsFree, this->RightHandSide,
+    this->Tangent.Solve(abortCheck, problem.IsFree, this->RightHandSide,
       { problem.Limits.LinearIterations, tolerance }, report.NewtonSteps == 0, this->Direction);
   report.LinearIterations += result.Iterations;
   ++report.NewtonSteps;
@@ -254,8 +255,8 @@ bool EquilibriumSolver::Clamp()
   return !wasClamped;
 }
 
-bool EquilibriumSolver::MoveHeldNodes(
-  Watch& watch, const EquilibriumProblem& problem, State& state, EquilibriumReport& report)
+bool EquilibriumSolver::MoveHeldNodes(AbortCheck& abortCheck, const EquilibriumProblem& problem,
+  State& state, EquilibriumReport& report)
 {
   const std::size_t nodes = problem.IsFree.size();
   std::vector<glm::dvec3> moves(nodes, glm::dvec3(0.0));
@@ -273,8 +274,8 @@ bool EquilibriumSolver::MoveHeldNodes(
   bool isPositive = false;
   do
   {
-    this->UpdateTangent(watch, problem, state);
-    ForRows(watch, nodes,
+    this->UpdateTangent(abortCheck, problem, state);
+    ForRows(abortCheck, nodes,
       [&](std::size_t begin, std::size_t end)
       {
         this->Tangent.GetMatrix().Multiply(
@@ -284,7 +285,8 @@ bool EquilibriumSolver::MoveHeldNodes(
           this->RightHandSide[node] = -this->RightHandSide[node];
         }
       });
-    isPositive = this->SolveLinear(watch, problem, state, problem.Limits.LinearTolerance, report);
+    isPositive =
+      this->SolveLinear(abortCheck, problem, state, problem.Limits.LinearTolerance, report);
   } while (!isPositive && this->Clamp());
   State guess;
   guess.Displacements = state.Displacements;
@@ -301,11 +303,11 @@ bool EquilibriumSolver::MoveHeldNodes(
     guess.Displacements[node] = problem.Targets[i];
   }
   const std::int64_t inverted = state.Sums.Inverted;
-  this->Evaluate(watch, problem, guess);
+  this->Evaluate(abortCheck, problem, guess);
   if (guess.Sums.Inverted > inverted || !std::isfinite(guess.Potential))
   {
     // The linear response inverts tetrahedra. Moving only the held nodes may give a lower energy.
-    this->Evaluate(watch, problem, state);
+    this->Evaluate(abortCheck, problem, state);
     if (state.Potential <= guess.Potential || !std::isfinite(guess.Potential))
     {
       this->HasTangent = false;
@@ -316,7 +318,8 @@ bool EquilibriumSolver::MoveHeldNodes(
   return true;
 }
 
-bool EquilibriumSolver::Search(Watch& watch, const EquilibriumProblem& problem, State& state)
+bool EquilibriumSolver::Search(
+  AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state)
 {
   constexpr int halvings = 30;
   constexpr double leastFall = 1e-4;
@@ -340,7 +343,7 @@ bool EquilibriumSolver::Search(Watch& watch, const EquilibriumProblem& problem, 
     {
       this->Trial.Displacements[node] = state.Displacements[node] + length * this->Direction[node];
     }
-    this->Evaluate(watch, problem, this->Trial);
+    this->Evaluate(abortCheck, problem, this->Trial);
     if (!(this->Trial.Potential <= state.Potential + leastFall * length * slope + slack))
     {
       continue;
@@ -357,15 +360,15 @@ bool EquilibriumSolver::Search(Watch& watch, const EquilibriumProblem& problem, 
   return false;
 }
 
-bool EquilibriumSolver::Step(Watch& watch, const EquilibriumProblem& problem, double tolerance,
-  State& state, EquilibriumReport& report)
+bool EquilibriumSolver::Step(AbortCheck& abortCheck, const EquilibriumProblem& problem,
+  double tolerance, State& state, EquilibriumReport& report)
 {
   do
   {
-    this->UpdateTangent(watch, problem, state);
+    this->UpdateTangent(abortCheck, problem, state);
     this->RightHandSide.assign(problem.IsFree.size(), glm::dvec3(0.0));
-    const bool isPositive = this->SolveLinear(watch, problem, state, tolerance, report);
-    if ((isPositive || this->ClampedSteps > 0) && this->Search(watch, problem, state))
+    const bool isPositive = this->SolveLinear(abortCheck, problem, state, tolerance, report);
+    if ((isPositive || this->ClampedSteps > 0) && this->Search(abortCheck, problem, state))
     {
       this->ClampedSteps = std::max(0, this->ClampedSteps - 1);
       return true;
@@ -378,12 +381,12 @@ EquilibriumReport EquilibriumSolver::Solve(const EquilibriumRequest& request)
 {
   const EquilibriumProblem problem =
     MakeProblem(request, this->Body, this->Pieces, this->Volumes, this->Sliding);
-  Watch watch(request.Progress);
-  watch.Ask();
+  AbortCheck abortCheck(request.Progress);
+  abortCheck.Check();
   this->UseHeldPieces(problem);
   try
   {
-    return this->FindEquilibrium(watch, request, problem);
+    return this->FindEquilibrium(abortCheck, request, problem);
   }
   catch (...)
   {
@@ -419,7 +422,7 @@ void EquilibriumSolver::MoveFollowers(const EquilibriumProblem& problem, State& 
 }
 
 EquilibriumReport EquilibriumSolver::FindEquilibrium(
-  Watch& watch, const EquilibriumRequest& request, const EquilibriumProblem& problem)
+  AbortCheck& abortCheck, const EquilibriumRequest& request, const EquilibriumProblem& problem)
 {
   const EquilibriumLimits& limits = problem.Limits;
   EquilibriumReport report;
@@ -443,7 +446,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   }
   if (this->HasForces)
   {
-    this->FindPotential(watch, problem, state);
+    this->FindPotential(abortCheck, problem, state);
   }
   else
   {
@@ -455,14 +458,14 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
         state.Displacements[node] = this->Sliding.Project(node, state.Displacements[node]);
       }
     }
-    this->Evaluate(watch, problem, state);
+    this->Evaluate(abortCheck, problem, state);
   }
   // Do not untangle tetrahedra that were already inverted after the last call.
   const std::int64_t inverted = this->HasForces ? state.Sums.Inverted : 0;
-  const bool isMoved = this->MoveHeldNodes(watch, problem, state, report);
+  const bool isMoved = this->MoveHeldNodes(abortCheck, problem, state, report);
   if (state.Sums.Inverted > inverted)
   {
-    this->Untangle(watch, problem, state);
+    this->Untangle(abortCheck, problem, state);
   }
   // Frames of an animation follow each other, so frames in which the body moves need not be solved
   // accurately.
@@ -500,7 +503,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
       !report.IsConverged && stalledSteps.AreTooMany(residuals.Largest, state.Sums.Inverted > 0);
     if (report.IsConverged || hasStalled || report.NewtonSteps >= limits.NewtonSteps ||
       !this->Step(
-        watch, problem, ChooseTolerance(problem, wanted / residuals.Largest), state, report))
+        abortCheck, problem, ChooseTolerance(problem, wanted / residuals.Largest), state, report))
     {
       break;
     }
@@ -513,7 +516,8 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   this->IsTangentOld = true;
   this->MoveFollowers(problem, state);
   report.StrainEnergy = state.Sums.Energy;
-  report.NumberOfInvertedTetrahedra = CountInvertedSplits(watch, this->Body, state.Displacements);
+  report.NumberOfInvertedTetrahedra =
+    CountInvertedSplits(abortCheck, this->Body, state.Displacements);
   std::swap(this->Last, state);
   this->HasForces = true;
   this->HasStalled = hasStalled;

@@ -2,12 +2,12 @@
 #ifndef DeformVolumeEquilibriumSolver_h
 #define DeformVolumeEquilibriumSolver_h
 
+#include "AbortCheck.h"
 #include "EquilibriumProblem.h"
 #include "EquilibriumTypes.h"
 #include "FiniteElements.h"
 #include "SlidingNodes.h"
 #include "TangentSolver.h"
-#include "Watch.h"
 
 #include <glm/vec3.hpp>
 
@@ -20,7 +20,7 @@ namespace deformvolume
 class EquilibriumSolver
 {
 public:
-  EquilibriumSolver(Watch& watch, const ElasticBody& body);
+  EquilibriumSolver(AbortCheck& abortCheck, const ElasticBody& body);
 
   void SetMaterials(const std::vector<ElasticMaterial>& materials);
   void SetMaterialModel(MaterialModel model);
@@ -41,7 +41,7 @@ private:
     FiniteElements::Sums Sums;
     double Potential = 0.0;
   };
-  void UpdateScale(Watch& watch);
+  void UpdateScale(AbortCheck& abortCheck);
   // Returns an upper limit of the rounding errors of forces, in N.
   double FindRounding(const std::vector<glm::dvec3>& displacements) const;
   // Discards forces, tangent, preconditioner and solutions of earlier calls. Keeps the
@@ -51,34 +51,34 @@ private:
   // Moves pieces that are not held with their supporting nodes.
   void MoveFollowers(const EquilibriumProblem& problem, State& state) const;
   EquilibriumReport FindEquilibrium(
-    Watch& watch, const EquilibriumRequest& request, const EquilibriumProblem& problem);
-  void Evaluate(Watch& watch, const EquilibriumProblem& problem, State& state) const;
-  void FindPotential(Watch& watch, const EquilibriumProblem& problem, State& state) const;
+    AbortCheck& abortCheck, const EquilibriumRequest& request, const EquilibriumProblem& problem);
+  void Evaluate(AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state) const;
+  void FindPotential(AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state) const;
   // Computes the tangent of a state unless the existing one can be reused. The tangent is clamped
   // (see FindTangent) for some steps after the exact one was indefinite, or its direction did not
   // reduce the energy.
-  void UpdateTangent(Watch& watch, const EquilibriumProblem& problem, const State& state);
+  void UpdateTangent(AbortCheck& abortCheck, const EquilibriumProblem& problem, const State& state);
   // Moves the held nodes to their targets, and the other nodes by the linear response. Returns
   // whether any held node moved.
-  bool MoveHeldNodes(
-    Watch& watch, const EquilibriumProblem& problem, State& state, EquilibriumReport& report);
+  bool MoveHeldNodes(AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state,
+    EquilibriumReport& report);
   // Moves the free nodes of inverted tetrahedra to the mean of their neighbors, as long as this
   // reduces the energy. Newton's method alone would take many steps: it turns each inverted
   // tetrahedron independently of its neighbors.
-  void Untangle(Watch& watch, const EquilibriumProblem& problem, State& state);
+  void Untangle(AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state);
   // The tolerance for a linear system if the residual is to be reduced by the factor `wanted`.
   static double ChooseTolerance(const EquilibriumProblem& problem, double wanted);
   // Solves for the right-hand side plus the unbalanced forces. Returns false if the tangent is not
   // positive definite.
-  bool SolveLinear(Watch& watch, const EquilibriumProblem& problem, const State& state,
+  bool SolveLinear(AbortCheck& abortCheck, const EquilibriumProblem& problem, const State& state,
     double tolerance, EquilibriumReport& report);
   // Switches to clamped tangents for some steps. Returns false if they are already in use.
   bool Clamp();
   // Line search along the direction. Returns false if no step length reduces the energy.
-  bool Search(Watch& watch, const EquilibriumProblem& problem, State& state);
+  bool Search(AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state);
   // One Newton step. Returns false if no step reduces the energy.
-  bool Step(Watch& watch, const EquilibriumProblem& problem, double tolerance, State& state,
-    EquilibriumReport& report);
+  bool Step(AbortCheck& abortCheck, const EquilibriumProblem& problem, double tolerance,
+    State& state, EquilibriumReport& report);
 
   ElasticBody Body;
   BodyPieces Pieces;

@@ -36,14 +36,14 @@ FiniteElementModel::~FiniteElementModel() = default;
 
 void FiniteElementModel::SetBody(const ElasticBody& body, const std::function<bool()>& progress)
 {
-  Watch watch(progress);
-  watch.Ask();
-  CheckBody(body, &watch);
+  AbortCheck abortCheck(progress);
+  abortCheck.Check();
+  CheckBody(body, &abortCheck);
   if (body.MidSides.empty())
   {
     throw Error("The tetrahedra of the body have no mid-side nodes. Call AddMidSideNodes first.");
   }
-  auto solver = std::make_unique<EquilibriumSolver>(watch, body);
+  auto solver = std::make_unique<EquilibriumSolver>(abortCheck, body);
   solver->SetMaterialModel(this->Impl->Model);
   this->Impl->Solver = std::move(solver);
 }

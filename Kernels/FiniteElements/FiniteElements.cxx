@@ -213,11 +213,11 @@ ChunkRange GetRange(const ElementBatches& batches, std::size_t chunk)
 // Calls body(chunk) for all chunks, one color after the other. Chunks with a common node are never
 // handled in parallel, and always in the same order.
 template <typename Body>
-void ForChunks(Watch& watch, const ElementBatches& batches, Body&& body)
+void ForChunks(AbortCheck& abortCheck, const ElementBatches& batches, Body&& body)
 {
   for (const std::vector<std::uint32_t>& color : batches.Colors)
   {
-    ForParts(watch, color.size(), ChunksAtOnce, [&](std::size_t i) { body(color[i]); });
+    ForParts(abortCheck, color.size(), ChunksAtOnce, [&](std::size_t i) { body(color[i]); });
   }
 }
 
@@ -291,12 +291,12 @@ void FindBatchResults(const ElementBatch& batch, const double* displacements,
 } // namespace
 
 std::int64_t CountInvertedSplits(
-  Watch& watch, const ElasticBody& body, const std::vector<glm::dvec3>& displacements)
+  AbortCheck& abortCheck, const ElasticBody& body, const std::vector<glm::dvec3>& displacements)
 {
   constexpr std::size_t size = 1024;
   const std::size_t parts = (body.Tetrahedra.size() + size - 1) / size;
   std::vector<std::int64_t> numbers(parts, 0);
-  ForParts(watch, parts, ChunksAtOnce,
+  ForParts(abortCheck, parts, ChunksAtOnce,
     [&](std::size_t part)
     {
       const std::size_t end = std::min(body.Tetrahedra.size(), (part + 1) * size);
@@ -318,12 +318,12 @@ std::int64_t CountInvertedSplits(
   return std::accumulate(numbers.begin(), numbers.end(), std::int64_t{ 0 });
 }
 
-FiniteElements::Sums FiniteElements::FindForces(
-  Watch& watch, const std::vector<glm::dvec3>& displacements, std::vector<glm::dvec3>& forces) const
+FiniteElements::Sums FiniteElements::FindForces(AbortCheck& abortCheck,
+  const std::vector<glm::dvec3>& displacements, std::vector<glm::dvec3>& forces) const
 {
   forces.assign(displacements.size(), glm::dvec3(0.0));
   std::vector<Sums> sums(this->Batches.GetNumberOfChunks());
-  ForChunks(watch, this->Batches,
+  ForChunks(abortCheck, this->Batches,
     [&](std::size_t chunk)
     {
       const ForceArguments arguments{ this->Batches.Batches.data(), GetRange(this->Batches, chunk),
@@ -346,11 +346,11 @@ FiniteElements::Sums FiniteElements::FindForces(
   return total;
 }
 
-void FiniteElements::FindInvertedNodes(Watch& watch, const std::vector<glm::dvec3>& displacements,
-  std::vector<unsigned char>& isInverted) const
+void FiniteElements::FindInvertedNodes(AbortCheck& abortCheck,
+  const std::vector<glm::dvec3>& displacements, std::vector<unsigned char>& isInverted) const
 {
   isInverted.assign(displacements.size(), 0);
-  ForChunks(watch, this->Batches,
+  ForChunks(abortCheck, this->Batches,
     [&](std::size_t chunk)
     {
       const ChunkRange range = GetRange(this->Batches, chunk);
@@ -371,11 +371,11 @@ void FiniteElements::FindInvertedNodes(Watch& watch, const std::vector<glm::dvec
     });
 }
 
-void FiniteElements::AssembleTangent(Watch& watch, const std::vector<glm::dvec3>& displacements,
-  bool isClamped, BlockMatrix& matrix) const
+void FiniteElements::AssembleTangent(AbortCheck& abortCheck,
+  const std::vector<glm::dvec3>& displacements, bool isClamped, BlockMatrix& matrix) const
 {
-  matrix.PutToZero(watch);
-  ForChunks(watch, this->Batches,
+  matrix.PutToZero(abortCheck);
+  ForChunks(abortCheck, this->Batches,
     [&](std::size_t chunk)
     {
       const TangentArguments arguments{ this->Batches.Batches.data(), this->Positions.data(),
@@ -389,7 +389,7 @@ void FiniteElements::AssembleTangent(Watch& watch, const std::vector<glm::dvec3>
           });
         });
     });
-  matrix.Mirror(watch);
+  matrix.Mirror(abortCheck);
 }
 
 std::vector<ElementResults> FiniteElements::GetResults(

@@ -2,11 +2,11 @@
 #ifndef DeformVolumeFiniteElements_h
 #define DeformVolumeFiniteElements_h
 
+#include "AbortCheck.h"
 #include "BlockMatrix.h"
 #include "BodyPieces.h"
 #include "ElementBatches.h"
 #include "EquilibriumTypes.h"
-#include "Watch.h"
 
 #include <glm/vec3.hpp>
 
@@ -21,8 +21,8 @@ namespace deformvolume
 class FiniteElements
 {
 public:
-  FiniteElements(Watch& watch, const ElasticBody& body)
-    : Batches(MakeElementBatches(watch, body))
+  FiniteElements(AbortCheck& abortCheck, const ElasticBody& body)
+    : Batches(MakeElementBatches(abortCheck, body))
   {
   }
 
@@ -38,9 +38,9 @@ public:
   }
 
   /// Prepares AssembleTangent() for matrices of this pattern.
-  void SetPattern(Watch& watch, const BlockPattern& pattern)
+  void SetPattern(AbortCheck& abortCheck, const BlockPattern& pattern)
   {
-    this->Positions = FindPositions(watch, this->Batches, pattern);
+    this->Positions = FindPositions(abortCheck, this->Batches, pattern);
   }
 
   struct Sums
@@ -55,17 +55,17 @@ public:
 
   /// Computes the strain energy, and the forces: its derivatives with respect to the displacements
   /// of the nodes.
-  Sums FindForces(Watch& watch, const std::vector<glm::dvec3>& displacements,
+  Sums FindForces(AbortCheck& abortCheck, const std::vector<glm::dvec3>& displacements,
     std::vector<glm::dvec3>& forces) const;
 
   /// Marks the nodes of tetrahedra that are inverted at a Gauss point.
-  void FindInvertedNodes(Watch& watch, const std::vector<glm::dvec3>& displacements,
+  void FindInvertedNodes(AbortCheck& abortCheck, const std::vector<glm::dvec3>& displacements,
     std::vector<unsigned char>& isInverted) const;
 
   /// Computes the second derivatives. isClamped: whether the tangent must have no negative
   /// eigenvalues, see FindTangent.
-  void AssembleTangent(Watch& watch, const std::vector<glm::dvec3>& displacements, bool isClamped,
-    BlockMatrix& matrix) const;
+  void AssembleTangent(AbortCheck& abortCheck, const std::vector<glm::dvec3>& displacements,
+    bool isClamped, BlockMatrix& matrix) const;
 
   std::vector<ElementResults> GetResults(const std::vector<glm::dvec3>& displacements) const;
 
@@ -78,7 +78,7 @@ private:
 /// Counts tetrahedra of which one of twelve linear parts is inverted (see
 /// EquilibriumReport::NumberOfInvertedTetrahedra).
 std::int64_t CountInvertedSplits(
-  Watch& watch, const ElasticBody& body, const std::vector<glm::dvec3>& displacements);
+  AbortCheck& abortCheck, const ElasticBody& body, const std::vector<glm::dvec3>& displacements);
 
 } // namespace deformvolume
 

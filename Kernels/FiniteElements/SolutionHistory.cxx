@@ -8,7 +8,7 @@
 namespace deformvolume
 {
 
-void SolutionHistory::Guess(Watch& watch, const BlockMatrix& matrix,
+void SolutionHistory::Guess(AbortCheck& abortCheck, const BlockMatrix& matrix,
   const std::vector<unsigned char>& isFree, const std::vector<glm::dvec3>& rightHandSide,
   std::vector<glm::dvec3>& solution, std::vector<glm::dvec3>& residual)
 {
@@ -19,13 +19,13 @@ void SolutionHistory::Guess(Watch& watch, const BlockMatrix& matrix,
   {
     Entry& entry = this->Entries[i];
     entry.Product.resize(rows);
-    ForRows(watch, rows,
+    ForRows(abortCheck, rows,
       [&](std::size_t begin, std::size_t end)
       { matrix.Multiply(begin, end, isFree.data(), entry.Solution.data(), entry.Product.data()); });
   }
   this->HasProducts = true;
-  const Factors factors = this->FindFactors(watch, rightHandSide);
-  ForRows(watch, rows,
+  const Factors factors = this->FindFactors(abortCheck, rightHandSide);
+  ForRows(abortCheck, rows,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t i = 0; i < this->Number; ++i)
@@ -42,7 +42,7 @@ void SolutionHistory::Guess(Watch& watch, const BlockMatrix& matrix,
 // The energy is least if the residual is orthogonal to all solutions. This gives a small symmetric
 // system, solved by elimination. A solution that nearly depends on those before it is skipped.
 SolutionHistory::Factors SolutionHistory::FindFactors(
-  Watch& watch, const std::vector<glm::dvec3>& rightHandSide) const
+  AbortCheck& abortCheck, const std::vector<glm::dvec3>& rightHandSide) const
 {
   constexpr double least = 1e-8;
   double system[Length][Length + 1] = {};
@@ -52,9 +52,9 @@ SolutionHistory::Factors SolutionHistory::FindFactors(
     const std::vector<glm::dvec3>& solution = this->Entries[i].Solution;
     for (std::size_t j = i; j < this->Number; ++j)
     {
-      system[i][j] = system[j][i] = SumOfProducts(watch, solution, this->Entries[j].Product);
+      system[i][j] = system[j][i] = SumOfProducts(abortCheck, solution, this->Entries[j].Product);
     }
-    system[i][Length] = SumOfProducts(watch, solution, rightHandSide);
+    system[i][Length] = SumOfProducts(abortCheck, solution, rightHandSide);
     sizes[i] = system[i][i];
   }
   bool isUsed[Length] = {};

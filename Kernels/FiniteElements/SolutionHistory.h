@@ -2,8 +2,8 @@
 #ifndef DeformVolumeSolutionHistory_h
 #define DeformVolumeSolutionHistory_h
 
+#include "AbortCheck.h"
 #include "BlockMatrix.h"
-#include "Watch.h"
 
 #include <glm/vec3.hpp>
 
@@ -30,9 +30,9 @@ public:
 
   /// Finds the combination of stored solutions with the least energy, and its residual. Without
   /// stored solutions, the solution is 0 and the residual is the right-hand side.
-  void Guess(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
-    const std::vector<glm::dvec3>& rightHandSide, std::vector<glm::dvec3>& solution,
-    std::vector<glm::dvec3>& residual);
+  void Guess(AbortCheck& abortCheck, const BlockMatrix& matrix,
+    const std::vector<unsigned char>& isFree, const std::vector<glm::dvec3>& rightHandSide,
+    std::vector<glm::dvec3>& solution, std::vector<glm::dvec3>& residual);
 
   /// Stores a solution for the matrix of the last guess, in place of the oldest one.
   void Add(const std::vector<glm::dvec3>& solution, const std::vector<glm::dvec3>& rightHandSide,
@@ -46,7 +46,7 @@ private:
   };
   using Factors = std::array<double, Length>;
 
-  Factors FindFactors(Watch& watch, const std::vector<glm::dvec3>& rightHandSide) const;
+  Factors FindFactors(AbortCheck& abortCheck, const std::vector<glm::dvec3>& rightHandSide) const;
 
   // The latest solution comes first.
   std::array<Entry, Length> Entries;

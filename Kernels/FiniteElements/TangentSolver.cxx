@@ -29,13 +29,13 @@ void TangentSolver::Forget()
 }
 
 void TangentSolver::Update(
-  Watch& watch, const std::vector<glm::dvec3>& displacements, bool isClamped)
+  AbortCheck& abortCheck, const std::vector<glm::dvec3>& displacements, bool isClamped)
 {
   this->IsPreconditioned = false;
   this->AreLevelsNew = false;
   this->IsClamped = isClamped;
   this->History.ForgetProducts();
-  this->Elements.AssembleTangent(watch, displacements, isClamped, this->Matrix);
+  this->Elements.AssembleTangent(abortCheck, displacements, isClamped, this->Matrix);
   this->Sliding.Constrain(this->Matrix);
   this->Shape = displacements;
 }
@@ -50,7 +50,8 @@ std::vector<glm::dvec3> TangentSolver::FindPositions() const
   return positions;
 }
 
-Preconditioner& TangentSolver::Precondition(Watch& watch, const std::vector<unsigned char>& isFree)
+Preconditioner& TangentSolver::Precondition(
+  AbortCheck& abortCheck, const std::vector<unsigned char>& isFree)
 {
   const bool isNew = this->IsFree != isFree;
   this->HasLevels = std::count(isFree.begin(), isFree.end(), 1) >= LeastNumberForLevels;
@@ -61,7 +62,7 @@ Preconditioner& TangentSolver::Precondition(Watch& watch, const std::vector<unsi
   {
     if (!isCurrent)
     {
-      this->Jacobi.Build(watch, this->Matrix, isFree);
+      this->Jacobi.Build(abortCheck, this->Matrix, isFree);
     }
     return this->Jacobi;
   }
@@ -76,11 +77,11 @@ Preconditioner& TangentSolver::Precondition(Watch& watch, const std::vector<unsi
   {
     if (isNew)
     {
-      levels.Build(watch, this->Matrix, isFree, this->FindPositions());
+      levels.Build(abortCheck, this->Matrix, isFree, this->FindPositions());
     }
     if (!isCurrent)
     {
-      levels.SetPositions(watch, this->Matrix.GetPattern(), this->FindPositions());
+      levels.SetPositions(abortCheck, this->Matrix.GetPattern(), this->FindPositions());
     }
     return levels;
   };
@@ -107,11 +108,11 @@ void TangentSolver::JudgeLevels(int iterations, double digits)
   }
 }
 
-ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
+ConjugateGradients::Result TangentSolver::Solve(AbortCheck& abortCheck,
   const std::vector<unsigned char>& isFree, const std::vector<glm::dvec3>& rightHandSide,
   const Limits& limits, bool usesHistory, std::vector<glm::dvec3>& solution)
 {
-  const double squared = SumOfProducts(watch, rightHandSide, rightHandSide);
+  const double squared = SumOfProducts(abortCheck, rightHandSide, rightHandSide);
   const double wanted = limits.Tolerance * limits.Tolerance * squared;
   if (this->IsFree != isFree)
   {
@@ -120,8 +121,8 @@ ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
   double begin = squared;
   if (usesHistory)
   {
-    this->History.Guess(watch, this->Matrix, isFree, rightHandSide, solution, this->Residual);
-    begin = SumOfProducts(watch, this->Residual, this->Residual);
+    this->History.Guess(abortCheck, this->Matrix, isFree, rightHandSide, solution, this->Residual);
+    begin = SumOfProducts(abortCheck, this->Residual, this->Residual);
   }
   if (!usesHistory || !(begin < squared))
   {
@@ -132,14 +133,14 @@ ConjugateGradients::Result TangentSolver::Solve(Watch& watch,
   ConjugateGradients::Result result;
   for (bool isSolved = false; !isSolved;)
   {
-    Preconditioner& preconditioner = this->Precondition(watch, isFree);
+    Preconditioner& preconditioner = this->Precondition(abortCheck, isFree);
     const bool areFloats = this->HasLevels && !this->AreDoubles;
     const int left = limits.Iterations - result.Iterations;
     const int most = areFloats ? std::min(left, MostIterationsWithFloats) : left;
     const ConjugateGradients::Result part = this->Gradients.Solve(
-      watch, this->Matrix, isFree, preconditioner, { most, wanted }, solution, this->Residual);
+      abortCheck, this->Matrix, isFree, preconditioner, { most, wanted }, solution, this->Residual);
     const bool isSlow = part.Iterations == most && most < left &&
-      SumOfProducts(watch, this->Residual, this->Residual) > wanted;
+      SumOfProducts(abortCheck, this->Residual, this->Residual) > wanted;
     result = { result.Iterations + part.Iterations, part.IsIndefinite };
     isSolved = !areFloats || !(isSlow || (part.IsIndefinite && this->IsClamped));
     if (!isSolved)

@@ -2,6 +2,7 @@
 #ifndef DeformVolumeTangentSolver_h
 #define DeformVolumeTangentSolver_h
 
+#include "AbortCheck.h"
 #include "BlockMatrix.h"
 #include "ConjugateGradients.h"
 #include "FiniteElements.h"
@@ -9,7 +10,6 @@
 #include "Preconditioner.h"
 #include "SlidingNodes.h"
 #include "SolutionHistory.h"
-#include "Watch.h"
 
 #include <glm/vec3.hpp>
 
@@ -41,15 +41,15 @@ public:
     double Tolerance = 1e-2;
   };
 
-  void SetPattern(Watch& watch, BlockPattern pattern)
+  void SetPattern(AbortCheck& abortCheck, BlockPattern pattern)
   {
-    this->Matrix.SetPattern(watch, std::move(pattern));
+    this->Matrix.SetPattern(abortCheck, std::move(pattern));
   }
   const BlockMatrix& GetMatrix() const { return this->Matrix; }
 
   /// Assembles the matrix for displacements. isClamped: whether it must have no negative
   /// eigenvalues, see FindTangent.
-  void Update(Watch& watch, const std::vector<glm::dvec3>& displacements, bool isClamped);
+  void Update(AbortCheck& abortCheck, const std::vector<glm::dvec3>& displacements, bool isClamped);
 
   /// Discards the preconditioner and all earlier solutions.
   void Forget();
@@ -57,13 +57,13 @@ public:
   /// Solves for the free nodes. The right-hand side must be 0 at other nodes. usesHistory:
   /// whether the system resembles earlier ones that were solved with `usesHistory`; the solver then
   /// starts from their solutions.
-  ConjugateGradients::Result Solve(Watch& watch, const std::vector<unsigned char>& isFree,
+  ConjugateGradients::Result Solve(AbortCheck& abortCheck, const std::vector<unsigned char>& isFree,
     const std::vector<glm::dvec3>& rightHandSide, const Limits& limits, bool usesHistory,
     std::vector<glm::dvec3>& solution);
 
 private:
   std::vector<glm::dvec3> FindPositions() const;
-  Preconditioner& Precondition(Watch& watch, const std::vector<unsigned char>& isFree);
+  Preconditioner& Precondition(AbortCheck& abortCheck, const std::vector<unsigned char>& isFree);
   // Lets the hierarchy be rebuilt if it converges much slower than when it was new.
   void JudgeLevels(int iterations, double digits);
 

@@ -14,8 +14,8 @@
 namespace deformvolume
 {
 
-Aggregates MakeAggregates(
-  Watch& watch, const std::vector<std::int32_t>& starts, const std::vector<std::int32_t>& columns)
+Aggregates MakeAggregates(AbortCheck& abortCheck, const std::vector<std::int32_t>& starts,
+  const std::vector<std::int32_t>& columns)
 {
   const std::size_t rows = starts.size() - 1;
   Aggregates result;
@@ -36,7 +36,7 @@ Aggregates MakeAggregates(
   std::stable_sort(order.begin(), order.end(),
     [&](std::size_t a, std::size_t b)
     { return starts[a + 1] - starts[a] > starts[b + 1] - starts[b]; });
-  ForItems(watch, rows,
+  ForItems(abortCheck, rows,
     [&](std::size_t item)
     {
       const std::size_t row = order[item];
@@ -59,7 +59,7 @@ Aggregates MakeAggregates(
     }
   }
   const std::vector<std::int32_t> first = aggregateOfRow;
-  ForItems(watch, rows,
+  ForItems(abortCheck, rows,
     [&](std::size_t row)
     {
       if (first[row] >= 0)
@@ -87,11 +87,11 @@ Aggregates MakeAggregates(
 
 template <int Size>
 std::vector<Eigen::Matrix<double, Size, Size>> InvertDiagonal(
-  Watch& watch, const SparseBlocks<Size, Size>& matrix)
+  AbortCheck& abortCheck, const SparseBlocks<Size, Size>& matrix)
 {
   using Block = Eigen::Matrix<double, Size, Size>;
   std::vector<Block> inverses(static_cast<std::size_t>(matrix.GetNumberOfRows()));
-  ForItemsInParallel(watch, inverses.size(),
+  ForItemsInParallel(abortCheck, inverses.size(),
     [&](std::size_t item)
     {
       const auto row = static_cast<std::int32_t>(item);
@@ -114,7 +114,7 @@ std::vector<Eigen::Matrix<double, Size, Size>> InvertDiagonal(
 }
 
 template <int Size>
-double FindLargestEigenvalue(Watch& watch, const SparseBlocks<Size, Size>& matrix,
+double FindLargestEigenvalue(AbortCheck& abortCheck, const SparseBlocks<Size, Size>& matrix,
   const std::vector<Eigen::Matrix<double, Size, Size>>& inverses)
 {
   constexpr int iterations = 12;
@@ -137,7 +137,7 @@ double FindLargestEigenvalue(Watch& watch, const SparseBlocks<Size, Size>& matri
   double length = 1.0;
   for (int iteration = 0; iteration < iterations; ++iteration)
   {
-    ForParts(watch, (vector.size() + 511) / 512, 64,
+    ForParts(abortCheck, (vector.size() + 511) / 512, 64,
       [&](std::size_t part)
       {
         for (std::size_t row = part * 512; row < std::min(vector.size(), (part + 1) * 512); ++row)
@@ -178,8 +178,9 @@ namespace
 // tentative prolongation, R the near null space of the coarse level. An aggregate of few rows does
 // not have all modes; its missing modes become 0.
 template <int Size>
-void Orthogonalize(Watch& watch, const Aggregates& aggregates, const NearNullSpace<Size>& modes,
-  SparseBlocks<Size, RigidModes>& prolongation, NearNullSpace<RigidModes>& coarse)
+void Orthogonalize(AbortCheck& abortCheck, const Aggregates& aggregates,
+  const NearNullSpace<Size>& modes, SparseBlocks<Size, RigidModes>& prolongation,
+  NearNullSpace<RigidModes>& coarse)
 {
   constexpr double least = 1e-7;
   prolongation.NumberOfColumns = aggregates.NumberOfAggregates;
@@ -200,7 +201,7 @@ void Orthogonalize(Watch& watch, const Aggregates& aggregates, const NearNullSpa
   coarse.assign(rowsOfAggregate.size(), Eigen::Matrix<double, RigidModes, RigidModes>::Zero());
   for (std::size_t aggregate = 0; aggregate < rowsOfAggregate.size(); ++aggregate)
   {
-    watch.Ask();
+    abortCheck.Check();
     const auto dot = [&](int i, int j)
     {
       double sum = 0.0;
@@ -240,17 +241,17 @@ void Orthogonalize(Watch& watch, const Aggregates& aggregates, const NearNullSpa
 } // namespace
 
 template <int Size>
-Coarsening<Size> Coarsen(Watch& watch, const SparseBlocks<Size, Size>& matrix,
+Coarsening<Size> Coarsen(AbortCheck& abortCheck, const SparseBlocks<Size, Size>& matrix,
   const std::vector<Eigen::Matrix<double, Size, Size>>& inverses, double largestEigenvalue,
   const NearNullSpace<Size>& modes)
 {
   Coarsening<Size> result;
-  const Aggregates aggregates = MakeAggregates(watch, matrix.Starts, matrix.ColumnOfBlock);
+  const Aggregates aggregates = MakeAggregates(abortCheck, matrix.Starts, matrix.ColumnOfBlock);
   SparseBlocks<Size, RigidModes> tentative;
-  Orthogonalize(watch, aggregates, modes, tentative, result.Modes);
+  Orthogonalize(abortCheck, aggregates, modes, tentative, result.Modes);
   const double damping = 4.0 / (3.0 * largestEigenvalue);
-  result.Prolongation = Multiply(watch, matrix, tentative);
-  ForItemsInParallel(watch, tentative.Blocks.size(),
+  result.Prolongation = Multiply(abortCheck, matrix, tentative);
+  ForItemsInParallel(abortCheck, tentative.Blocks.size(),
     [&](std::size_t r)
     {
       const auto row = static_cast<std::int32_t>(r);
@@ -265,12 +266,12 @@ Coarsening<Size> Coarsen(Watch& watch, const SparseBlocks<Size, Size>& matrix,
         }
       }
     });
-  auto product = Multiply(watch, matrix, result.Prolongation);
-  const auto restriction = Transpose(watch, result.Prolongation);
-  result.Matrix = Multiply(watch, restriction, product);
+  auto product = Multiply(abortCheck, matrix, result.Prolongation);
+  const auto restriction = Transpose(abortCheck, result.Prolongation);
+  result.Matrix = Multiply(abortCheck, restriction, product);
   product = {};
   // Unknowns of modes that were set to 0 would make the matrix singular.
-  ForItems(watch, result.Modes.size(),
+  ForItems(abortCheck, result.Modes.size(),
     [&](std::size_t item)
     {
       const auto row = static_cast<std::int32_t>(item);
@@ -290,16 +291,16 @@ Coarsening<Size> Coarsen(Watch& watch, const SparseBlocks<Size, Size>& matrix,
 }
 
 template std::vector<Eigen::Matrix<double, 3, 3>> InvertDiagonal<3>(
-  Watch&, const SparseBlocks<3, 3>&);
+  AbortCheck&, const SparseBlocks<3, 3>&);
 template std::vector<Eigen::Matrix<double, 6, 6>> InvertDiagonal<6>(
-  Watch&, const SparseBlocks<6, 6>&);
+  AbortCheck&, const SparseBlocks<6, 6>&);
 template double FindLargestEigenvalue<3>(
-  Watch&, const SparseBlocks<3, 3>&, const std::vector<Eigen::Matrix<double, 3, 3>>&);
+  AbortCheck&, const SparseBlocks<3, 3>&, const std::vector<Eigen::Matrix<double, 3, 3>>&);
 template double FindLargestEigenvalue<6>(
-  Watch&, const SparseBlocks<6, 6>&, const std::vector<Eigen::Matrix<double, 6, 6>>&);
-template Coarsening<3> Coarsen<3>(Watch&, const SparseBlocks<3, 3>&,
+  AbortCheck&, const SparseBlocks<6, 6>&, const std::vector<Eigen::Matrix<double, 6, 6>>&);
+template Coarsening<3> Coarsen<3>(AbortCheck&, const SparseBlocks<3, 3>&,
   const std::vector<Eigen::Matrix<double, 3, 3>>&, double, const NearNullSpace<3>&);
-template Coarsening<6> Coarsen<6>(Watch&, const SparseBlocks<6, 6>&,
+template Coarsening<6> Coarsen<6>(AbortCheck&, const SparseBlocks<6, 6>&,
   const std::vector<Eigen::Matrix<double, 6, 6>>&, double, const NearNullSpace<6>&);
 
 } // namespace deformvolume

@@ -2,8 +2,8 @@
 #ifndef DeformVolumeAggregation_h
 #define DeformVolumeAggregation_h
 
+#include "AbortCheck.h"
 #include "SparseBlocks.h"
-#include "Watch.h"
 
 #include <Eigen/Core>
 
@@ -25,8 +25,8 @@ struct Aggregates
   std::vector<std::int32_t> AggregateOfRow;
   std::int32_t NumberOfAggregates = 0;
 };
-Aggregates MakeAggregates(
-  Watch& watch, const std::vector<std::int32_t>& starts, const std::vector<std::int32_t>& columns);
+Aggregates MakeAggregates(AbortCheck& abortCheck, const std::vector<std::int32_t>& starts,
+  const std::vector<std::int32_t>& columns);
 
 /// The next coarser level of a matrix. Each aggregate of rows has six unknowns there, the
 /// amplitudes of its near-null-space modes.
@@ -42,16 +42,16 @@ struct Coarsening
 /// Returns the largest eigenvalue of the product of the inverse diagonal blocks and the matrix, or
 /// a slightly larger value.
 template <int Size>
-double FindLargestEigenvalue(Watch& watch, const SparseBlocks<Size, Size>& matrix,
+double FindLargestEigenvalue(AbortCheck& abortCheck, const SparseBlocks<Size, Size>& matrix,
   const std::vector<Eigen::Matrix<double, Size, Size>>& inverses);
 
 /// Returns the inverses of the diagonal blocks.
 template <int Size>
 std::vector<Eigen::Matrix<double, Size, Size>> InvertDiagonal(
-  Watch& watch, const SparseBlocks<Size, Size>& matrix);
+  AbortCheck& abortCheck, const SparseBlocks<Size, Size>& matrix);
 
 template <int Size>
-Coarsening<Size> Coarsen(Watch& watch, const SparseBlocks<Size, Size>& matrix,
+Coarsening<Size> Coarsen(AbortCheck& abortCheck, const SparseBlocks<Size, Size>& matrix,
   const std::vector<Eigen::Matrix<double, Size, Size>>& inverses, double largestEigenvalue,
   const NearNullSpace<Size>& modes);
 

@@ -57,11 +57,11 @@ DEFORMVOLUME_ALWAYS_INLINE void MultiplyRows(
 
 } // namespace
 
-BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
+BlockPattern MakeNodePattern(AbortCheck& abortCheck, const ElasticBody& body)
 {
   const std::size_t nodes = body.Points.size();
   std::vector<std::size_t> starts(nodes + 1, 0);
-  ForItems(watch, body.Tetrahedra.size(),
+  ForItems(abortCheck, body.Tetrahedra.size(),
     [&](std::size_t t) {
       body.ForNodes(t, [&](std::int32_t node) { ++starts[static_cast<std::size_t>(node) + 1]; });
     });
@@ -71,7 +71,7 @@ BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
   }
   std::vector<std::size_t> next(starts.begin(), starts.end() - 1);
   std::vector<std::int32_t> tetrahedra(starts.back());
-  ForItems(watch, body.Tetrahedra.size(),
+  ForItems(abortCheck, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
       body.ForNodes(t,
@@ -83,7 +83,7 @@ BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
   pattern.Rows.assign(nodes + 1, 0);
   pattern.Diagonal.resize(nodes);
   std::vector<std::int32_t> columns;
-  ForItems(watch, nodes,
+  ForItems(abortCheck, nodes,
     [&](std::size_t node)
     {
       columns.assign(1, static_cast<std::int32_t>(node));
@@ -111,7 +111,7 @@ BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body)
   // order.
   pattern.Mirrored.resize(pattern.Columns.size());
   std::vector<std::int32_t> nextOfRow(pattern.Rows.begin(), pattern.Rows.end() - 1);
-  ForItems(watch, pattern.Columns.size(),
+  ForItems(abortCheck, pattern.Columns.size(),
     [&](std::size_t block)
     { pattern.Mirrored[block] = nextOfRow[static_cast<std::size_t>(pattern.Columns[block])]++; });
   return pattern;
@@ -125,12 +125,12 @@ std::int32_t BlockPattern::Find(std::int32_t row, std::int32_t column) const
 }
 
 std::vector<BatchPositions> FindPositions(
-  Watch& watch, const ElementBatches& batches, const BlockPattern& pattern)
+  AbortCheck& abortCheck, const ElementBatches& batches, const BlockPattern& pattern)
 {
   std::vector<BatchPositions> positions;
-  Grow(watch, positions, batches.Batches.size());
+  Grow(abortCheck, positions, batches.Batches.size());
   constexpr std::size_t atOnce = 256;
-  ForParts(watch, (positions.size() + atOnce - 1) / atOnce, 8,
+  ForParts(abortCheck, (positions.size() + atOnce - 1) / atOnce, 8,
     [&](std::size_t part)
     {
       const std::size_t end = std::min(positions.size(), (part + 1) * atOnce);
@@ -156,18 +156,18 @@ std::vector<BatchPositions> FindPositions(
   return positions;
 }
 
-void BlockMatrix::SetPattern(Watch& watch, BlockPattern pattern)
+void BlockMatrix::SetPattern(AbortCheck& abortCheck, BlockPattern pattern)
 {
   this->Pattern = std::move(pattern);
   // One more value than the blocks need, for the ignored lane of LoadColumn.
   this->Values.clear();
-  Grow(watch, this->Values, this->Pattern.GetNumberOfBlocks() * BlockSize + 1);
+  Grow(abortCheck, this->Values, this->Pattern.GetNumberOfBlocks() * BlockSize + 1);
 }
 
-void BlockMatrix::PutToZero(Watch& watch)
+void BlockMatrix::PutToZero(AbortCheck& abortCheck)
 {
   constexpr std::size_t size = std::size_t(1) << 16;
-  ForParts(watch, (this->Values.size() + size - 1) / size, 256,
+  ForParts(abortCheck, (this->Values.size() + size - 1) / size, 256,
     [&](std::size_t part)
     {
       const std::size_t begin = part * size;
@@ -177,10 +177,10 @@ void BlockMatrix::PutToZero(Watch& watch)
     });
 }
 
-void BlockMatrix::Mirror(Watch& watch)
+void BlockMatrix::Mirror(AbortCheck& abortCheck)
 {
   const std::size_t rows = this->Pattern.GetNumberOfRows();
-  ForParts(watch, (rows + RowsOfPart - 1) / RowsOfPart, PartsAtOnce,
+  ForParts(abortCheck, (rows + RowsOfPart - 1) / RowsOfPart, PartsAtOnce,
     [&](std::size_t part)
     {
       const std::size_t end = std::min(rows, (part + 1) * RowsOfPart);

@@ -2,8 +2,8 @@
 #ifndef DeformVolumeBlockMatrix_h
 #define DeformVolumeBlockMatrix_h
 
+#include "AbortCheck.h"
 #include "ElementBatches.h"
-#include "Watch.h"
 
 #include <glm/vec3.hpp>
 
@@ -34,7 +34,7 @@ struct BlockPattern
 };
 
 /// Makes the pattern in which two nodes are connected if they have a tetrahedron in common.
-BlockPattern MakeNodePattern(Watch& watch, const ElasticBody& body);
+BlockPattern MakeNodePattern(AbortCheck& abortCheck, const ElasticBody& body);
 
 /// The matrix blocks of the pairs of nodes of each tetrahedron of a batch. Pairs are ordered 0 1, 0
 /// 2, ..., 0 9, 1 2, ..., 8 9. Only blocks above the diagonal are stored. If the second node of a
@@ -48,7 +48,7 @@ struct BatchPositions
   std::int32_t Blocks[NumberOfPairs][NumberOfLanes];
 };
 std::vector<BatchPositions> FindPositions(
-  Watch& watch, const ElementBatches& batches, const BlockPattern& pattern);
+  AbortCheck& abortCheck, const ElementBatches& batches, const BlockPattern& pattern);
 
 /// A symmetric matrix of blocks of 3 x 3 values, each block by columns.
 class BlockMatrix
@@ -60,7 +60,7 @@ public:
   static constexpr std::size_t RowsOfPart = 512;
   static constexpr std::size_t PartsAtOnce = 512;
 
-  void SetPattern(Watch& watch, BlockPattern pattern);
+  void SetPattern(AbortCheck& abortCheck, BlockPattern pattern);
   const BlockPattern& GetPattern() const { return this->Pattern; }
 
   double* GetBlock(std::int32_t block)
@@ -76,10 +76,10 @@ public:
     return this->GetBlock(this->Pattern.Diagonal[row]);
   }
 
-  void PutToZero(Watch& watch);
+  void PutToZero(AbortCheck& abortCheck);
 
   /// Copies the blocks above the diagonal to the transposed positions below it.
-  void Mirror(Watch& watch);
+  void Mirror(AbortCheck& abortCheck);
 
   /// Sets the rows [begin, end) of the product of the matrix and a vector: free rows to their
   /// product, other rows to 0.

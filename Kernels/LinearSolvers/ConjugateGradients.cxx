@@ -10,22 +10,23 @@
 
 namespace deformvolume
 {
-ConjugateGradients::Result ConjugateGradients::Solve(Watch& watch, const BlockMatrix& matrix,
-  const std::vector<unsigned char>& isFree, Preconditioner& preconditioner, const Limits& limits,
-  std::vector<glm::dvec3>& solution, std::vector<glm::dvec3>& residual)
+ConjugateGradients::Result ConjugateGradients::Solve(AbortCheck& abortCheck,
+  const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
+  Preconditioner& preconditioner, const Limits& limits, std::vector<glm::dvec3>& solution,
+  std::vector<glm::dvec3>& residual)
 {
   const std::size_t rows = residual.size();
   this->Preconditioned.resize(rows);
   this->Direction.assign(rows, glm::dvec3(0.0));
   this->Product.resize(rows);
-  double squared = SumOfProducts(watch, residual, residual);
+  double squared = SumOfProducts(abortCheck, residual, residual);
   double last = 0.0;
   Result result;
   int& iteration = result.Iterations;
   for (; squared > limits.SquaredResidual && iteration < limits.Iterations; ++iteration)
   {
-    preconditioner.Apply(watch, residual, std::sqrt(squared), this->Preconditioned);
-    const double product = SumOfProducts(watch, residual, this->Preconditioned);
+    preconditioner.Apply(abortCheck, residual, std::sqrt(squared), this->Preconditioned);
+    const double product = SumOfProducts(abortCheck, residual, this->Preconditioned);
     if (!(product > 0.0))
     {
       result.IsIndefinite = true;
@@ -35,7 +36,7 @@ ConjugateGradients::Result ConjugateGradients::Solve(Watch& watch, const BlockMa
     last = product;
     // All directions must be updated before the first product: the rows of one part use directions
     // of other parts.
-    ForRows(watch, rows,
+    ForRows(abortCheck, rows,
       [&](std::size_t begin, std::size_t end)
       {
         for (std::size_t row = begin; row < end; ++row)
@@ -43,7 +44,7 @@ ConjugateGradients::Result ConjugateGradients::Solve(Watch& watch, const BlockMa
           this->Direction[row] = this->Preconditioned[row] + ratio * this->Direction[row];
         }
       });
-    const double curvature = SumOfParts(watch, rows,
+    const double curvature = SumOfParts(abortCheck, rows,
       [&](std::size_t begin, std::size_t end)
       {
         matrix.Multiply(begin, end, isFree.data(), this->Direction.data(), this->Product.data());
@@ -61,7 +62,7 @@ ConjugateGradients::Result ConjugateGradients::Solve(Watch& watch, const BlockMa
       break;
     }
     const double length = product / curvature;
-    squared = SumOfParts(watch, rows,
+    squared = SumOfParts(abortCheck, rows,
       [&](std::size_t begin, std::size_t end)
       {
         double sum = 0.0;

@@ -2,9 +2,9 @@
 #ifndef DeformVolumeConjugateGradients_h
 #define DeformVolumeConjugateGradients_h
 
+#include "AbortCheck.h"
 #include "BlockMatrix.h"
 #include "Preconditioner.h"
-#include "Watch.h"
 
 #include <glm/vec3.hpp>
 
@@ -34,9 +34,9 @@ public:
   };
 
   /// Improves a solution. residual: of the given solution, 0 at nodes that are not free; updated.
-  Result Solve(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
-    Preconditioner& preconditioner, const Limits& limits, std::vector<glm::dvec3>& solution,
-    std::vector<glm::dvec3>& residual);
+  Result Solve(AbortCheck& abortCheck, const BlockMatrix& matrix,
+    const std::vector<unsigned char>& isFree, Preconditioner& preconditioner, const Limits& limits,
+    std::vector<glm::dvec3>& solution, std::vector<glm::dvec3>& residual);
 
 private:
   std::vector<glm::dvec3> Preconditioned;

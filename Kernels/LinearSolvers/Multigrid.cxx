@@ -22,7 +22,7 @@ constexpr std::int32_t CoarsestAggregates = 100;
 constexpr Eigen::Index ColumnsAtOnce = 48;
 
 // Extracts the rows and columns of free nodes.
-SparseBlocks<3, 3> ExtractFree(Watch& watch, const BlockMatrix& matrix,
+SparseBlocks<3, 3> ExtractFree(AbortCheck& abortCheck, const BlockMatrix& matrix,
   const std::vector<unsigned char>& isFree, const std::vector<std::int32_t>& freeNodes)
 {
   const BlockPattern& pattern = matrix.GetPattern();
@@ -36,7 +36,7 @@ SparseBlocks<3, 3> ExtractFree(Watch& watch, const BlockMatrix& matrix,
   result.Starts.reserve(freeNodes.size() + 1);
   result.ColumnOfBlock.reserve(pattern.Columns.size());
   result.Blocks.reserve(pattern.Columns.size());
-  ForItems(watch, freeNodes.size(),
+  ForItems(abortCheck, freeNodes.size(),
     [&](std::size_t i)
     {
       const auto row = static_cast<std::size_t>(freeNodes[i]);
@@ -76,13 +76,13 @@ NearNullSpace<3> MakeRigidModes(
 }
 
 template <typename Real, int Size>
-std::vector<Real> MakeSmoother(
-  Watch& watch, const std::vector<Eigen::Matrix<double, Size, Size>>& inverses, double damping)
+std::vector<Real> MakeSmoother(AbortCheck& abortCheck,
+  const std::vector<Eigen::Matrix<double, Size, Size>>& inverses, double damping)
 {
   constexpr std::size_t size = Size * Size;
   // Padding: the last column is read with as many values as there are lanes.
   std::vector<Real> result(inverses.size() * size + PaddedSize<Size>, Real(0));
-  ForItemsInParallel(watch, inverses.size(),
+  ForItemsInParallel(abortCheck, inverses.size(),
     [&](std::size_t row)
     {
       for (std::size_t i = 0; i < size; ++i)
@@ -95,16 +95,17 @@ std::vector<Real> MakeSmoother(
 
 // Sets up a level for a matrix, and returns the next coarser one.
 template <typename Real, int Size>
-Coarsening<Size> MakeLevel(Watch& watch, const SparseBlocks<Size, Size>& matrix,
+Coarsening<Size> MakeLevel(AbortCheck& abortCheck, const SparseBlocks<Size, Size>& matrix,
   const NearNullSpace<Size>& modes, MultigridLevel<Real, Size>& level)
 {
-  const auto inverses = InvertDiagonal(watch, matrix);
-  const double largest = FindLargestEigenvalue(watch, matrix, inverses);
-  Coarsening<Size> coarsening = Coarsen(watch, matrix, inverses, largest, modes);
-  level.Matrix = PaddedBlocks<Real, Size, Size>(watch, matrix);
-  level.Smoother = MakeSmoother<Real>(watch, inverses, 4.0 / (3.0 * largest));
-  level.Prolongation = PaddedBlocks<Real, Size, 6>(watch, coarsening.Prolongation);
-  level.Restriction = PaddedBlocks<Real, 6, Size>(watch, Transpose(watch, coarsening.Prolongation));
+  const auto inverses = InvertDiagonal(abortCheck, matrix);
+  const double largest = FindLargestEigenvalue(abortCheck, matrix, inverses);
+  Coarsening<Size> coarsening = Coarsen(abortCheck, matrix, inverses, largest, modes);
+  level.Matrix = PaddedBlocks<Real, Size, Size>(abortCheck, matrix);
+  level.Smoother = MakeSmoother<Real>(abortCheck, inverses, 4.0 / (3.0 * largest));
+  level.Prolongation = PaddedBlocks<Real, Size, 6>(abortCheck, coarsening.Prolongation);
+  level.Restriction =
+    PaddedBlocks<Real, 6, Size>(abortCheck, Transpose(abortCheck, coarsening.Prolongation));
   const std::size_t length = inverses.size() * PaddedSize<Size>;
   level.Right.assign(length, Real(0));
   level.Solution.assign(length, Real(0));
@@ -135,12 +136,12 @@ void ApplySmoother(MultigridLevel<Real, Size>& level, std::size_t begin, std::si
 
 // Pre-smoothing, and the residual.
 template <typename Real, int Size>
-void SmoothFirst(Watch& watch, MultigridLevel<Real, Size>& level)
+void SmoothFirst(AbortCheck& abortCheck, MultigridLevel<Real, Size>& level)
 {
   const std::size_t rows = level.Matrix.GetNumberOfRows();
-  ForRows(
-    watch, rows, [&](std::size_t begin, std::size_t end) { ApplySmoother(level, begin, end); });
-  ForRows(watch, rows,
+  ForRows(abortCheck, rows,
+    [&](std::size_t begin, std::size_t end) { ApplySmoother(level, begin, end); });
+  ForRows(abortCheck, rows,
     [&](std::size_t begin, std::size_t end)
     {
       level.Matrix.Subtract(
@@ -150,13 +151,14 @@ void SmoothFirst(Watch& watch, MultigridLevel<Real, Size>& level)
 
 // Adds the correction of the coarser level, then post-smoothing.
 template <typename Real, int Size>
-void SmoothLast(Watch& watch, MultigridLevel<Real, Size>& level, const std::vector<Real>& coarse)
+void SmoothLast(
+  AbortCheck& abortCheck, MultigridLevel<Real, Size>& level, const std::vector<Real>& coarse)
 {
   const std::size_t rows = level.Matrix.GetNumberOfRows();
-  ForRows(watch, rows,
+  ForRows(abortCheck, rows,
     [&](std::size_t begin, std::size_t end)
     { level.Prolongation.Add(begin, end, coarse.data(), level.Solution.data()); });
-  ForRows(watch, rows,
+  ForRows(abortCheck, rows,
     [&](std::size_t begin, std::size_t end)
     {
       level.Matrix.Smooth(
@@ -167,9 +169,10 @@ void SmoothLast(Watch& watch, MultigridLevel<Real, Size>& level, const std::vect
 
 // Restricts the residual to the right-hand side of the coarser level.
 template <typename Real, int Size>
-void Restrict(Watch& watch, const MultigridLevel<Real, Size>& level, std::vector<Real>& coarse)
+void Restrict(
+  AbortCheck& abortCheck, const MultigridLevel<Real, Size>& level, std::vector<Real>& coarse)
 {
-  ForRows(watch, level.Restriction.GetNumberOfRows(),
+  ForRows(abortCheck, level.Restriction.GetNumberOfRows(),
     [&](std::size_t begin, std::size_t end)
     {
       std::fill(coarse.begin() + static_cast<std::ptrdiff_t>(begin * PaddedSize<6>),
@@ -180,12 +183,12 @@ void Restrict(Watch& watch, const MultigridLevel<Real, Size>& level, std::vector
 
 // Cholesky factorization below the diagonal, in groups of columns that take a few milliseconds
 // each. Returns whether the matrix is positive definite up to rounding.
-bool Factorize(Watch& watch, Eigen::MatrixXd& matrix)
+bool Factorize(AbortCheck& abortCheck, Eigen::MatrixXd& matrix)
 {
   const Eigen::Index size = matrix.rows();
   for (Eigen::Index begin = 0; begin < size; begin += ColumnsAtOnce)
   {
-    watch.Ask();
+    abortCheck.Check();
     const Eigen::Index columns = std::min(ColumnsAtOnce, size - begin);
     const Eigen::Index rest = size - begin - columns;
     auto own = matrix.block(begin, begin, columns, columns);
@@ -204,7 +207,7 @@ bool Factorize(Watch& watch, Eigen::MatrixXd& matrix)
 
 // Returns the inverse of a matrix, by rows; empty if the matrix is not positive definite.
 template <typename Real>
-std::vector<Real> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
+std::vector<Real> Invert(AbortCheck& abortCheck, const SparseBlocks<6, 6>& matrix)
 {
   const Eigen::Index size = 6 * static_cast<Eigen::Index>(matrix.GetNumberOfRows());
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
@@ -215,14 +218,14 @@ std::vector<Real> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
       dense.block<6, 6>(6 * row, 6 * matrix.ColumnOfBlock[block]) = matrix.Blocks[block];
     }
   }
-  if (!Factorize(watch, dense))
+  if (!Factorize(abortCheck, dense))
   {
     return {};
   }
   std::vector<Real> result(static_cast<std::size_t>(size * size));
   for (Eigen::Index begin = 0; begin < size; begin += ColumnsAtOnce)
   {
-    watch.Ask();
+    abortCheck.Check();
     const Eigen::Index columns = std::min(ColumnsAtOnce, size - begin);
     Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(size, size).middleCols(begin, columns);
     dense.triangularView<Eigen::Lower>().solveInPlace(inverse);
@@ -238,7 +241,7 @@ std::vector<Real> Invert(Watch& watch, const SparseBlocks<6, 6>& matrix)
 } // namespace
 
 template <typename Real>
-void Multigrid<Real>::Build(Watch& watch, const BlockMatrix& matrix,
+void Multigrid<Real>::Build(AbortCheck& abortCheck, const BlockMatrix& matrix,
   const std::vector<unsigned char>& isFree, const std::vector<glm::dvec3>& positions)
 {
   this->FreeNodes.clear();
@@ -251,14 +254,15 @@ void Multigrid<Real>::Build(Watch& watch, const BlockMatrix& matrix,
       this->FreeNodes.push_back(static_cast<std::int32_t>(node));
     }
   }
-  Coarsening<3> first = MakeLevel(watch, ExtractFree(watch, matrix, isFree, this->FreeNodes),
-    MakeRigidModes(positions, this->FreeNodes), this->Fine);
+  Coarsening<3> first =
+    MakeLevel(abortCheck, ExtractFree(abortCheck, matrix, isFree, this->FreeNodes),
+      MakeRigidModes(positions, this->FreeNodes), this->Fine);
   SparseBlocks<6, 6> coarse = std::move(first.Matrix);
   NearNullSpace<6> modes = std::move(first.Modes);
   while (coarse.GetNumberOfRows() > CoarsestAggregates)
   {
     this->Coarse.emplace_back();
-    Coarsening<6> next = MakeLevel(watch, coarse, modes, this->Coarse.back());
+    Coarsening<6> next = MakeLevel(abortCheck, coarse, modes, this->Coarse.back());
     if (next.Matrix.GetNumberOfRows() == coarse.GetNumberOfRows())
     {
       // Each aggregate is a disconnected part of the body, so coarsening cannot continue.
@@ -268,14 +272,15 @@ void Multigrid<Real>::Build(Watch& watch, const BlockMatrix& matrix,
     coarse = std::move(next.Matrix);
     modes = std::move(next.Modes);
   }
-  this->Inverse = coarse.GetNumberOfRows() <= CoarsestAggregates ? Invert<Real>(watch, coarse)
+  this->Inverse = coarse.GetNumberOfRows() <= CoarsestAggregates ? Invert<Real>(abortCheck, coarse)
                                                                  : std::vector<Real>();
   // The coarsest level needs only its vectors.
   this->Coarse.emplace_back();
   const std::size_t length = static_cast<std::size_t>(coarse.GetNumberOfRows()) * PaddedSize<6>;
   if (this->Inverse.empty())
   {
-    this->Coarse.back().Smoother = MakeSmoother<Real>(watch, InvertDiagonal(watch, coarse), 1.0);
+    this->Coarse.back().Smoother =
+      MakeSmoother<Real>(abortCheck, InvertDiagonal(abortCheck, coarse), 1.0);
   }
   this->Coarse.back().Right.assign(length, Real(0));
   this->Coarse.back().Solution.assign(length, Real(0));
@@ -283,14 +288,15 @@ void Multigrid<Real>::Build(Watch& watch, const BlockMatrix& matrix,
 
 template <typename Real>
 void Multigrid<Real>::SetPositions(
-  Watch& watch, const BlockPattern& pattern, const std::vector<glm::dvec3>& positions)
+  AbortCheck& abortCheck, const BlockPattern& pattern, const std::vector<glm::dvec3>& positions)
 {
-  FindNodeRotations(watch, pattern, this->FreeNodes, this->Positions, positions, this->Rotations);
+  FindNodeRotations(
+    abortCheck, pattern, this->FreeNodes, this->Positions, positions, this->Rotations);
 }
 
 template <typename Real>
 void Multigrid<Real>::SolveCoarsest(
-  Watch& watch, const std::vector<Real>& right, std::vector<Real>& solution)
+  AbortCheck& abortCheck, const std::vector<Real>& right, std::vector<Real>& solution)
 {
   const std::size_t aggregates = right.size() / PaddedSize<6>;
   const std::size_t size = 6 * aggregates;
@@ -299,7 +305,7 @@ void Multigrid<Real>::SolveCoarsest(
   {
     packed[i] = right[i / 6 * PaddedSize<6> + i % 6];
   }
-  ForParts(watch, (aggregates + 31) / 32, PartsAtOnce,
+  ForParts(abortCheck, (aggregates + 31) / 32, PartsAtOnce,
     [&](std::size_t part)
     {
       for (std::size_t i = part * 192; i < std::min(size, (part + 1) * 192); ++i)
@@ -330,35 +336,35 @@ void Multigrid<Real>::SolveCoarsest(
 }
 
 template <typename Real>
-void Multigrid<Real>::SolveCoarse(Watch& watch, std::size_t level)
+void Multigrid<Real>::SolveCoarse(AbortCheck& abortCheck, std::size_t level)
 {
   MultigridLevel<Real, 6>& coarse = this->Coarse[level];
   if (level + 1 == this->Coarse.size())
   {
     if (this->Inverse.empty())
     {
-      ForRows(watch, coarse.Right.size() / PaddedSize<6>,
+      ForRows(abortCheck, coarse.Right.size() / PaddedSize<6>,
         [&](std::size_t begin, std::size_t end) { ApplySmoother(coarse, begin, end); });
       return;
     }
-    this->SolveCoarsest(watch, coarse.Right, coarse.Solution);
+    this->SolveCoarsest(abortCheck, coarse.Right, coarse.Solution);
     return;
   }
-  SmoothFirst(watch, coarse);
-  Restrict(watch, coarse, this->Coarse[level + 1].Right);
-  this->SolveCoarse(watch, level + 1);
-  SmoothLast(watch, coarse, this->Coarse[level + 1].Solution);
+  SmoothFirst(abortCheck, coarse);
+  Restrict(abortCheck, coarse, this->Coarse[level + 1].Right);
+  this->SolveCoarse(abortCheck, level + 1);
+  SmoothLast(abortCheck, coarse, this->Coarse[level + 1].Solution);
 }
 
 template <typename Real>
-void Multigrid<Real>::Apply(
-  Watch& watch, const std::vector<glm::dvec3>& vector, double size, std::vector<glm::dvec3>& result)
+void Multigrid<Real>::Apply(AbortCheck& abortCheck, const std::vector<glm::dvec3>& vector,
+  double size, std::vector<glm::dvec3>& result)
 {
   // Scale the vector: residuals become smaller than the smallest float.
   const double scale = 1.0 / size;
   std::fill(result.begin(), result.end(), glm::dvec3(0.0));
   const std::size_t rows = this->FreeNodes.size();
-  ForRows(watch, rows,
+  ForRows(abortCheck, rows,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t row = begin; row < end; ++row)
@@ -372,11 +378,11 @@ void Multigrid<Real>::Apply(
         right[2] = static_cast<Real>(value.z);
       }
     });
-  SmoothFirst(watch, this->Fine);
-  Restrict(watch, this->Fine, this->Coarse.front().Right);
-  this->SolveCoarse(watch, 0);
-  SmoothLast(watch, this->Fine, this->Coarse.front().Solution);
-  ForRows(watch, rows,
+  SmoothFirst(abortCheck, this->Fine);
+  Restrict(abortCheck, this->Fine, this->Coarse.front().Right);
+  this->SolveCoarse(abortCheck, 0);
+  SmoothLast(abortCheck, this->Fine, this->Coarse.front().Solution);
+  ForRows(abortCheck, rows,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t row = begin; row < end; ++row)

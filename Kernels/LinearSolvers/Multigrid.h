@@ -2,10 +2,10 @@
 #ifndef DeformVolumeMultigrid_h
 #define DeformVolumeMultigrid_h
 
+#include "AbortCheck.h"
 #include "BlockMatrix.h"
 #include "PaddedBlocks.h"
 #include "Preconditioner.h"
-#include "Watch.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
@@ -43,17 +43,18 @@ class Multigrid : public Preconditioner
 public:
   /// Sets the current positions of the nodes, by which the hierarchy is rotated.
   void SetPositions(
-    Watch& watch, const BlockPattern& pattern, const std::vector<glm::dvec3>& positions);
+    AbortCheck& abortCheck, const BlockPattern& pattern, const std::vector<glm::dvec3>& positions);
 
   /// positions: the deformed positions of the nodes, for which the matrix was computed.
-  void Build(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree,
-    const std::vector<glm::dvec3>& positions);
-  void Apply(Watch& watch, const std::vector<glm::dvec3>& vector, double size,
+  void Build(AbortCheck& abortCheck, const BlockMatrix& matrix,
+    const std::vector<unsigned char>& isFree, const std::vector<glm::dvec3>& positions);
+  void Apply(AbortCheck& abortCheck, const std::vector<glm::dvec3>& vector, double size,
     std::vector<glm::dvec3>& result) override;
 
 private:
-  void SolveCoarse(Watch& watch, std::size_t level);
-  void SolveCoarsest(Watch& watch, const std::vector<Real>& right, std::vector<Real>& solution);
+  void SolveCoarse(AbortCheck& abortCheck, std::size_t level);
+  void SolveCoarsest(
+    AbortCheck& abortCheck, const std::vector<Real>& right, std::vector<Real>& solution);
 
   std::vector<std::int32_t> FreeNodes;
   // The positions of the nodes at Build(), and the rotations of their neighborhoods since then.

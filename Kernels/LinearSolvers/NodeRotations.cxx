@@ -83,12 +83,12 @@ DEFORMVOLUME_ALWAYS_INLINE void FindRotations(const RotationArguments& arguments
 
 } // namespace
 
-void FindNodeRotations(Watch& watch, const BlockPattern& pattern,
+void FindNodeRotations(AbortCheck& abortCheck, const BlockPattern& pattern,
   const std::vector<std::int32_t>& nodes, const std::vector<glm::dvec3>& before,
   const std::vector<glm::dvec3>& now, std::vector<glm::dmat3>& rotations)
 {
   rotations.resize(nodes.size());
-  ForRows(watch, nodes.size(),
+  ForRows(abortCheck, nodes.size(),
     [&](std::size_t begin, std::size_t end)
     {
       const RotationArguments arguments = { &pattern, nodes.data(), begin, end, before.data(),

@@ -112,14 +112,14 @@ void Run(const BlockProduct<Real>& arguments)
 
 template <typename Real, int Rows, int Columns>
 PaddedBlocks<Real, Rows, Columns>::PaddedBlocks(
-  Watch& watch, const SparseBlocks<Rows, Columns>& matrix)
+  AbortCheck& abortCheck, const SparseBlocks<Rows, Columns>& matrix)
   : Starts(matrix.Starts)
   , ColumnOfBlock(matrix.ColumnOfBlock)
 {
   constexpr std::size_t size = Rows * Columns;
   // Padding: the last column is read with as many values as there are lanes.
   this->Values.resize(matrix.Blocks.size() * size + PaddedSize<Rows>, Real(0));
-  ForItemsInParallel(watch, matrix.Blocks.size(),
+  ForItemsInParallel(abortCheck, matrix.Blocks.size(),
     [&](std::size_t block)
     {
       for (std::size_t i = 0; i < size; ++i)

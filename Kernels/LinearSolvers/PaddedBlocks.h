@@ -22,7 +22,7 @@ class PaddedBlocks
 {
 public:
   PaddedBlocks() = default;
-  PaddedBlocks(Watch& watch, const SparseBlocks<Rows, Columns>& matrix);
+  PaddedBlocks(AbortCheck& abortCheck, const SparseBlocks<Rows, Columns>& matrix);
 
   std::size_t GetNumberOfRows() const { return this->Starts.size() - 1; }
 

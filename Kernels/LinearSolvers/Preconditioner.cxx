@@ -12,11 +12,11 @@ namespace deformvolume
 {
 
 void BlockJacobi::Build(
-  Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree)
+  AbortCheck& abortCheck, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree)
 {
   const std::size_t rows = isFree.size();
   this->Inverses.resize(rows);
-  ForRows(watch, rows,
+  ForRows(abortCheck, rows,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t row = begin; row < end; ++row)
@@ -28,11 +28,11 @@ void BlockJacobi::Build(
     });
 }
 
-void BlockJacobi::Apply(
-  Watch& watch, const std::vector<glm::dvec3>& vector, double, std::vector<glm::dvec3>& result)
+void BlockJacobi::Apply(AbortCheck& abortCheck, const std::vector<glm::dvec3>& vector, double,
+  std::vector<glm::dvec3>& result)
 {
   const std::size_t rows = vector.size();
-  ForRows(watch, rows,
+  ForRows(abortCheck, rows,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t row = begin; row < end; ++row)

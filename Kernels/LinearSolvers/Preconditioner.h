@@ -2,8 +2,8 @@
 #ifndef DeformVolumePreconditioner_h
 #define DeformVolumePreconditioner_h
 
+#include "AbortCheck.h"
 #include "BlockMatrix.h"
-#include "Watch.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
@@ -20,7 +20,7 @@ class Preconditioner
 public:
   virtual ~Preconditioner() = default;
   /// size: the approximate length of the vector, for scaling.
-  virtual void Apply(Watch& watch, const std::vector<glm::dvec3>& vector, double size,
+  virtual void Apply(AbortCheck& abortCheck, const std::vector<glm::dvec3>& vector, double size,
     std::vector<glm::dvec3>& result) = 0;
 };
 
@@ -28,8 +28,9 @@ public:
 class BlockJacobi : public Preconditioner
 {
 public:
-  void Build(Watch& watch, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree);
-  void Apply(Watch& watch, const std::vector<glm::dvec3>& vector, double size,
+  void Build(
+    AbortCheck& abortCheck, const BlockMatrix& matrix, const std::vector<unsigned char>& isFree);
+  void Apply(AbortCheck& abortCheck, const std::vector<glm::dvec3>& vector, double size,
     std::vector<glm::dvec3>& result) override;
 
 private:

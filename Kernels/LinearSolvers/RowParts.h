@@ -3,8 +3,8 @@
 #ifndef DeformVolumeRowParts_h
 #define DeformVolumeRowParts_h
 
+#include "AbortCheck.h"
 #include "BlockMatrix.h"
-#include "Watch.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -18,21 +18,21 @@ namespace deformvolume
 
 /// Calls body(begin, end) for ranges of rows in parallel.
 template <typename Body>
-void ForRows(Watch& watch, std::size_t rows, Body&& body)
+void ForRows(AbortCheck& abortCheck, std::size_t rows, Body&& body)
 {
   constexpr std::size_t size = BlockMatrix::RowsOfPart;
-  ForParts(watch, (rows + size - 1) / size, BlockMatrix::PartsAtOnce,
+  ForParts(abortCheck, (rows + size - 1) / size, BlockMatrix::PartsAtOnce,
     [&](std::size_t part) { body(part * size, std::min(rows, (part + 1) * size)); });
 }
 
 /// Returns the sum of the results of body(begin, end) for ranges of rows, added in the order of the
 /// rows.
 template <typename Body>
-double SumOfParts(Watch& watch, std::size_t rows, Body&& body)
+double SumOfParts(AbortCheck& abortCheck, std::size_t rows, Body&& body)
 {
   constexpr std::size_t size = BlockMatrix::RowsOfPart;
   std::vector<double> sums((rows + size - 1) / size);
-  ForRows(watch, rows,
+  ForRows(abortCheck, rows,
     [&](std::size_t begin, std::size_t end) { sums[begin / size] = body(begin, end); });
   double total = 0.0;
   for (const double sum : sums)
@@ -43,9 +43,9 @@ double SumOfParts(Watch& watch, std::size_t rows, Body&& body)
 }
 
 inline double SumOfProducts(
-  Watch& watch, const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b)
+  AbortCheck& abortCheck, const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b)
 {
-  return SumOfParts(watch, a.size(),
+  return SumOfParts(abortCheck, a.size(),
     [&](std::size_t begin, std::size_t end)
     {
       double sum = 0.0;

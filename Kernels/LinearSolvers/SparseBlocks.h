@@ -2,7 +2,7 @@
 #ifndef DeformVolumeSparseBlocks_h
 #define DeformVolumeSparseBlocks_h
 
-#include "Watch.h"
+#include "AbortCheck.h"
 
 #include <Eigen/Core>
 
@@ -38,12 +38,13 @@ struct SparseBlocks
 };
 
 template <int Rows, int Columns>
-SparseBlocks<Columns, Rows> Transpose(Watch& watch, const SparseBlocks<Rows, Columns>& matrix)
+SparseBlocks<Columns, Rows> Transpose(
+  AbortCheck& abortCheck, const SparseBlocks<Rows, Columns>& matrix)
 {
   SparseBlocks<Columns, Rows> result;
   result.NumberOfColumns = matrix.GetNumberOfRows();
   result.Starts.assign(static_cast<std::size_t>(matrix.NumberOfColumns) + 1, 0);
-  ForItems(watch, matrix.ColumnOfBlock.size(),
+  ForItems(abortCheck, matrix.ColumnOfBlock.size(),
     [&](std::size_t block)
     { ++result.Starts[static_cast<std::size_t>(matrix.ColumnOfBlock[block]) + 1]; });
   for (std::size_t i = 1; i < result.Starts.size(); ++i)
@@ -53,7 +54,7 @@ SparseBlocks<Columns, Rows> Transpose(Watch& watch, const SparseBlocks<Rows, Col
   std::vector<std::int32_t> next(result.Starts.begin(), result.Starts.end() - 1);
   result.ColumnOfBlock.resize(matrix.Blocks.size());
   result.Blocks.resize(matrix.Blocks.size());
-  ForItems(watch, static_cast<std::size_t>(matrix.GetNumberOfRows()),
+  ForItems(abortCheck, static_cast<std::size_t>(matrix.GetNumberOfRows()),
     [&](std::size_t item)
     {
       const auto row = static_cast<std::int32_t>(item);
@@ -71,7 +72,7 @@ SparseBlocks<Columns, Rows> Transpose(Watch& watch, const SparseBlocks<Rows, Col
 /// Multiplies two matrices. The columns of each row of the product are sorted.
 template <int Rows, int Inner, int Columns>
 SparseBlocks<Rows, Columns> Multiply(
-  Watch& watch, const SparseBlocks<Rows, Inner>& a, const SparseBlocks<Inner, Columns>& b)
+  AbortCheck& abortCheck, const SparseBlocks<Rows, Inner>& a, const SparseBlocks<Inner, Columns>& b)
 {
   // Rows of coarse levels take more time, as they have more and larger blocks.
   constexpr std::int32_t rowsOfPart = Rows > 3 ? 32 : 256;
@@ -79,7 +80,7 @@ SparseBlocks<Rows, Columns> Multiply(
   using Result = SparseBlocks<Rows, Columns>;
   const std::int32_t rows = a.GetNumberOfRows();
   std::vector<Result> parts(static_cast<std::size_t>((rows + rowsOfPart - 1) / rowsOfPart));
-  ForParts(watch, parts.size(), partsAtOnce,
+  ForParts(abortCheck, parts.size(), partsAtOnce,
     [&](std::size_t part)
     {
       Result& result = parts[part];
@@ -138,7 +139,7 @@ SparseBlocks<Rows, Columns> Multiply(
   result.Blocks.reserve(blocks);
   for (Result& part : parts)
   {
-    watch.Ask();
+    abortCheck.Check();
     const std::int32_t offset = result.Starts.back();
     for (std::size_t i = 1; i < part.Starts.size(); ++i)
     {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MassSpringModel.h"
 
+#include "AbortCheck.h"
 #include "DeviceVectorsInternals.h"
 #include "GuardedCall.h"
 #include "HostMemory.h"
 #include "MassSpringResults.h"
 #include "MassSpringState.h"
 #include "MemoryBudget.h"
-#include "Watch.h"
 
 #include <algorithm>
 #include <chrono>
@@ -75,7 +75,7 @@ public:
   }
 
   void CheckSize(const ElasticBody& body);
-  void Make(Watch& watch, const ElasticBody& body, double cubeEdge);
+  void Make(AbortCheck& abortCheck, const ElasticBody& body, double cubeEdge);
   void Hold(const std::vector<HeldNode>& held);
   void Run(const MassSpringRequest& request, const MassSpringStep& step, std::int64_t steps);
 
@@ -108,12 +108,13 @@ void MassSpringModel::Internals::CheckSize(const ElasticBody& body)
     "Use a coarser mesh");
 }
 
-void MassSpringModel::Internals::Make(Watch& watch, const ElasticBody& body, double cubeEdge)
+void MassSpringModel::Internals::Make(
+  AbortCheck& abortCheck, const ElasticBody& body, double cubeEdge)
 {
-  watch.Ask();
+  abortCheck.Check();
   auto network = std::make_unique<MassSpringNetwork>(
-    watch, body, MassSpringState::GetLanes(this->Device), cubeEdge);
-  watch.Ask();
+    abortCheck, body, MassSpringState::GetLanes(this->Device), cubeEdge);
+  abortCheck.Check();
   // From here on the body is set without an abort. The previous body is deleted first, so its
   // memory is available.
   const std::uint64_t needed =
@@ -217,17 +218,17 @@ void MassSpringModel::SetWorkGroupSize(std::size_t size)
 
 void MassSpringModel::SetBody(const ElasticBody& body, const std::function<bool()>& progress)
 {
-  Watch watch(progress);
-  watch.Ask();
-  CheckBody(body, &watch);
-  const double cubeEdge = FindCubeEdge(watch, body);
+  AbortCheck abortCheck(progress);
+  abortCheck.Check();
+  CheckBody(body, &abortCheck);
+  const double cubeEdge = FindCubeEdge(abortCheck, body);
   Internals& impl = *this->Impl;
   impl.Guard(
     [&]
     {
       impl.Device.GetContext();
       impl.CheckSize(body);
-      impl.Make(watch, body, cubeEdge);
+      impl.Make(abortCheck, body, cubeEdge);
     });
 }
 
@@ -265,8 +266,8 @@ void MassSpringModel::SplitNodes(const ElasticBody& body, const std::vector<std:
       }
       displacements.resize(body.Points.size() * 3);
       velocities.resize(body.Points.size() * 3);
-      Watch watch(nullptr);
-      impl.Make(watch, body, impl.CubeEdge);
+      AbortCheck abortCheck(nullptr);
+      impl.Make(abortCheck, body, impl.CubeEdge);
       impl.State->SetDisplacements(displacements);
       impl.State->SetVelocities(velocities);
     });

@@ -82,7 +82,7 @@ double FindStableTimeStep(const ElasticBody& body, double cubeEdge)
 
 } // namespace
 
-double FindCubeEdge(Watch& watch, const ElasticBody& body)
+double FindCubeEdge(AbortCheck& abortCheck, const ElasticBody& body)
 {
   const Corners first = GetCorners(body, body.Tetrahedra.front());
   // Both kinds of tetrahedra have a face diagonal as their longest edge.
@@ -95,7 +95,7 @@ double FindCubeEdge(Watch& watch, const ElasticBody& body)
     }
   }
   const double edge = longest / std::sqrt(2.0);
-  ForItems(watch, body.Tetrahedra.size(),
+  ForItems(abortCheck, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
       if (!IsFifth(GetCorners(body, body.Tetrahedra[t]), edge))
@@ -134,7 +134,7 @@ SpringStiffness GetSpringStiffness(
 }
 
 MassSpringNetwork::MassSpringNetwork(
-  Watch& watch, const ElasticBody& body, int lanes, double cubeEdge)
+  AbortCheck& abortCheck, const ElasticBody& body, int lanes, double cubeEdge)
   : Lanes(lanes)
   , NumberOfPackets((body.Tetrahedra.size() + static_cast<std::size_t>(lanes) - 1) /
       static_cast<std::size_t>(lanes))
@@ -145,9 +145,9 @@ MassSpringNetwork::MassSpringNetwork(
   , StableTimeStep(FindStableTimeStep(body, cubeEdge))
 {
   const auto width = static_cast<std::size_t>(lanes);
-  watch.Ask();
+  abortCheck.Check();
   const std::vector<double> volumes = GetVolumes(body);
-  watch.Ask();
+  abortCheck.Check();
   this->Masses = GetNodeMasses(body, volumes);
   // Points that no tetrahedron uses may be far away.
   glm::dvec3 least = body.Points[static_cast<std::size_t>(body.Tetrahedra.front()[0])];
@@ -175,7 +175,7 @@ MassSpringNetwork::MassSpringNetwork(
     }
   }
   const std::size_t tetrahedra = body.Tetrahedra.size();
-  ForParts(watch, (tetrahedra + TetrahedraOfPart - 1) / TetrahedraOfPart, PartsAtOnce,
+  ForParts(abortCheck, (tetrahedra + TetrahedraOfPart - 1) / TetrahedraOfPart, PartsAtOnce,
     [&](std::size_t part)
     {
       const std::size_t last = std::min(tetrahedra, (part + 1) * TetrahedraOfPart);
@@ -197,7 +197,7 @@ MassSpringNetwork::MassSpringNetwork(
     body.Points.size(),
     [&](const auto& take)
     {
-      ForItems(watch, tetrahedra,
+      ForItems(abortCheck, tetrahedra,
         [&](std::size_t t)
         {
           for (std::size_t i = 0; i < 4; ++i)

@@ -2,8 +2,8 @@
 #ifndef DeformVolumeMassSpringNetwork_h
 #define DeformVolumeMassSpringNetwork_h
 
+#include "AbortCheck.h"
 #include "ElasticBody.h"
-#include "Watch.h"
 
 #include <cstdint>
 #include <vector>
@@ -15,7 +15,7 @@ namespace deformvolume
 /// Each tetrahedron has either three edges of the cube that meet at a corner, or six face
 /// diagonals. Edge lengths may deviate by a thousandth. Throws an Error with the number of the
 /// first tetrahedron that has another shape or size.
-double FindCubeEdge(Watch& watch, const ElasticBody& body);
+double FindCubeEdge(AbortCheck& abortCheck, const ElasticBody& body);
 
 /// The stiffness of the springs and of the volume of a tetrahedron.
 struct SpringStiffness
@@ -44,7 +44,7 @@ SpringStiffness GetSpringStiffness(
 struct MassSpringNetwork
 {
   /// cubeEdge: see FindCubeEdge.
-  MassSpringNetwork(Watch& watch, const ElasticBody& body, int lanes, double cubeEdge);
+  MassSpringNetwork(AbortCheck& abortCheck, const ElasticBody& body, int lanes, double cubeEdge);
 
   int Lanes;
   std::size_t NumberOfPackets;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BodyPieces.h"
 
+#include "AbortCheck.h"
 #include "CountedLists.h"
 #include "DisjointSets.h"
 #include "FaceNeighbors.h"
-#include "Watch.h"
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
@@ -183,14 +183,14 @@ glm::dvec3 TurnBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::
 
 } // namespace
 
-BodyPieces FindPieces(const ElasticBody& body, Watch* watch)
+BodyPieces FindPieces(const ElasticBody& body, AbortCheck* abortCheck)
 {
-  Watch none(nullptr);
-  Watch& asked = watch ? *watch : none;
-  const FaceNeighbors neighbors(body.Tetrahedra, body.Points.size(), &asked);
-  asked.Ask();
+  AbortCheck none(nullptr);
+  AbortCheck& given = abortCheck ? *abortCheck : none;
+  const FaceNeighbors neighbors(body.Tetrahedra, body.Points.size(), &given);
+  given.Check();
   DisjointSets<std::int32_t> sets(body.Tetrahedra.size());
-  ForItems(asked, body.Tetrahedra.size(),
+  ForItems(given, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
       for (std::size_t face = 4 * t; face < 4 * t + 4; ++face)
@@ -208,11 +208,11 @@ BodyPieces FindPieces(const ElasticBody& body, Watch* watch)
     pieces.PieceOfTetrahedron[t] =
       root == t ? pieces.NumberOfPieces++ : pieces.PieceOfTetrahedron[root];
   }
-  asked.Ask();
+  given.Check();
   SortTetrahedra(pieces);
-  asked.Ask();
+  given.Check();
   FindNodes(body, pieces);
-  asked.Ask();
+  given.Check();
   return pieces;
 }
 

@@ -14,7 +14,7 @@
 namespace deformvolume
 {
 
-class Watch;
+class AbortCheck;
 
 /// The pieces of a body: tetrahedra that are connected through faces. Two pieces can still share
 /// one node, two nodes (a hinge) or more.
@@ -36,8 +36,9 @@ struct BodyPieces
   /// The number of pieces.
   std::int32_t NumberOfPieces = 0;
 };
-/// Finds the pieces of a body. `watch` of the engine is polled for cancellation.
-DEFORMVOLUME_EXPORT BodyPieces FindPieces(const ElasticBody& body, Watch* watch = nullptr);
+/// Finds the pieces of a body. abortCheck: checks for an abort; null outside the engine.
+DEFORMVOLUME_EXPORT BodyPieces FindPieces(
+  const ElasticBody& body, AbortCheck* abortCheck = nullptr);
 
 /// A piece that is not held, but has supporting nodes: one node, or several on a line. Supporting
 /// nodes are fixed, held by handles, or shared with a piece that is held or that follows other

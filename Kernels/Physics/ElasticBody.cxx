@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ElasticBody.h"
 
+#include "AbortCheck.h"
 #include "CountedLists.h"
 #include "Error.h"
 #include "IndexBounds.h"
 #include "QuadraticTetrahedron.h"
-#include "Watch.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -44,9 +44,9 @@ void CheckPoints(const ElasticBody& body)
   }
 }
 
-void CheckNodes(Watch& watch, const ElasticBody& body)
+void CheckNodes(AbortCheck& abortCheck, const ElasticBody& body)
 {
-  ForItems(watch, body.Tetrahedra.size(),
+  ForItems(abortCheck, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
       body.ForNodes(t,
@@ -83,11 +83,11 @@ struct Counted
   }
 };
 
-void CheckShapes(Watch& watch, const ElasticBody& body)
+void CheckShapes(AbortCheck& abortCheck, const ElasticBody& body)
 {
   Counted inverted;
   Counted flat;
-  ForItems(watch, body.Tetrahedra.size(),
+  ForItems(abortCheck, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
       std::array<glm::dvec3, 4> points{};
@@ -115,18 +115,18 @@ void CheckShapes(Watch& watch, const ElasticBody& body)
 }
 
 // Two tetrahedra with the same corners would be twice as stiff as one.
-void CheckDuplicates(Watch& watch, const ElasticBody& body)
+void CheckDuplicates(AbortCheck& abortCheck, const ElasticBody& body)
 {
   // The other corners of the tetrahedra with the same lowest corner.
   using Entry = std::array<std::int32_t, 3>;
   std::vector<std::size_t> begins;
   std::vector<std::pair<Entry, std::size_t>> entries;
-  Grow(watch, entries, body.Tetrahedra.size());
+  Grow(abortCheck, entries, body.Tetrahedra.size());
   MakeLists(
     body.Points.size(),
     [&](const auto& take)
     {
-      ForItems(watch, body.Tetrahedra.size(),
+      ForItems(abortCheck, body.Tetrahedra.size(),
         [&](std::size_t t)
         {
           Tetrahedron corners = body.Tetrahedra[t];
@@ -137,7 +137,7 @@ void CheckDuplicates(Watch& watch, const ElasticBody& body)
     },
     begins, entries);
   Counted duplicates;
-  ForItems(watch, body.Points.size(),
+  ForItems(abortCheck, body.Points.size(),
     [&](std::size_t node)
     {
       std::sort(entries.begin() + static_cast<std::ptrdiff_t>(begins[node]),
@@ -190,10 +190,10 @@ bool IsFolded(const std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes>&
       });
 }
 
-void CheckMidSides(Watch& watch, const ElasticBody& body)
+void CheckMidSides(AbortCheck& abortCheck, const ElasticBody& body)
 {
   Counted folded;
-  ForItems(watch, body.MidSides.size(),
+  ForItems(abortCheck, body.MidSides.size(),
     [&](std::size_t t)
     {
       if (IsFolded(QuadraticTetrahedron::GetPoints(body, t)))
@@ -291,10 +291,10 @@ bool IsFlat(const std::array<glm::dvec3, 4>& points)
   return !(std::abs(determinant) > leastHeight * longest * longest * longest);
 }
 
-void CheckBody(const ElasticBody& body, Watch* watch)
+void CheckBody(const ElasticBody& body, AbortCheck* abortCheck)
 {
-  Watch none(nullptr);
-  Watch& asked = watch ? *watch : none;
+  AbortCheck none(nullptr);
+  AbortCheck& given = abortCheck ? *abortCheck : none;
   if (body.Tetrahedra.empty())
   {
     throw Error("The rest mesh has no tetrahedra, or all of them are hidden.");
@@ -308,10 +308,10 @@ void CheckBody(const ElasticBody& body, Watch* watch)
     CheckLength(body.MidSides.size(), body.Tetrahedra.size(), "tetrahedra with mid-side nodes");
   }
   CheckPoints(body);
-  CheckNodes(asked, body);
-  CheckShapes(asked, body);
-  CheckDuplicates(asked, body);
-  CheckMidSides(asked, body);
+  CheckNodes(given, body);
+  CheckShapes(given, body);
+  CheckDuplicates(given, body);
+  CheckMidSides(given, body);
   CheckSliding(body);
   CheckMaterials(body, body.Materials);
 }

@@ -17,7 +17,7 @@
 namespace deformvolume
 {
 
-class Watch;
+class AbortCheck;
 
 /// An isotropic elastic material.
 struct ElasticMaterial
@@ -133,9 +133,9 @@ DEFORMVOLUME_EXPORT bool IsFlat(const std::array<glm::dvec3, 4>& points);
 /// coordinate that is not finite, a flat or inverted tetrahedron, a material out of range, or an
 /// array of the wrong length. Also throws if mid-side nodes are so far from the middle of their
 /// edges that a ten-node tetrahedron overlaps itself, or that one of the linear tetrahedra into
-/// which it is split is inverted (QuadraticTetrahedron::IsSplitInverted). `watch` of the engine is
-/// polled for cancellation.
-DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body, Watch* watch = nullptr);
+/// which it is split is inverted (QuadraticTetrahedron::IsSplitInverted). abortCheck: checks for an
+/// abort; null outside the engine.
+DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body, AbortCheck* abortCheck = nullptr);
 
 /// The nodes of a tetrahedron for messages, such as "3, 4, 5 and 9". They are numbered as the
 /// points of the user's mesh, whose cells may have other numbers than the tetrahedra.

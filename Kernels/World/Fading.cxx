@@ -52,7 +52,7 @@ double GetLongestOnBorder(const DisplacementField& field, const glm::dvec3& spac
 
 } // namespace
 
-std::string FindFoldsOfFading(const std::string& border, double longest, double fadeDistance)
+std::string GetFoldWarning(const std::string& border, double longest, double fadeDistance)
 {
   // The slope of the weight is 1.5 at most.
   if (!(fadeDistance > 0.0) || 1.5 * longest <= fadeDistance)
@@ -64,7 +64,7 @@ std::string FindFoldsOfFading(const std::string& border, double longest, double 
     ": what lies outside may fold over. Set a fade distance of at least twice that displacement.";
 }
 
-std::string FindFaultOfFading(const FadedLinks& links, const std::vector<Tetrahedron>& tetrahedra,
+std::string GetFadingWarning(const FadedLinks& links, const std::vector<Tetrahedron>& tetrahedra,
   const float* displacements, const glm::dvec3& spacing, double fadeDistance)
 {
   std::string text;
@@ -82,11 +82,11 @@ std::string FindFaultOfFading(const FadedLinks& links, const std::vector<Tetrahe
   }
   const double longest = links.GetLongestDisplacement(tetrahedra, displacements, spacing);
   const std::string folds =
-    FindFoldsOfFading("boundary of the deformation mesh moves", longest, fadeDistance);
+    GetFoldWarning("boundary of the deformation mesh moves", longest, fadeDistance);
   return text + (text.empty() || folds.empty() ? "" : " ") + folds;
 }
 
-std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds& box,
+std::string GetFadingWarning(const DisplacementField& field, const IndexBounds& box,
   const glm::dvec3& spacing, double fadeDistance)
 {
   if (HoldsBox(field, box, FieldTolerance))
@@ -103,7 +103,7 @@ std::string FindFaultOfFading(const DisplacementField& field, const IndexBounds&
       ", and as the fade distance is 0 the volume is stretched or folded there. Set a fade "
       "distance of at least twice that displacement.";
   }
-  return FindFoldsOfFading(border, longest, fadeDistance);
+  return GetFoldWarning(border, longest, fadeDistance);
 }
 
 } // namespace deformvolume

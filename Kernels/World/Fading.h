@@ -25,21 +25,21 @@ DEFORMVOLUME_EXPORT OutsideVoxels MakeKeptVoxels(double fadeDistance);
 /// Returns a warning if space may fold where the displacement of a border fades within
 /// FadeDistance; otherwise "". border: subject and verb of the warning, for example "border of the
 /// displacement field moves". longest: the longest displacement of the border, in world units.
-DEFORMVOLUME_EXPORT std::string FindFoldsOfFading(
+DEFORMVOLUME_EXPORT std::string GetFoldWarning(
   const std::string& border, double longest, double fadeDistance);
 
 /// Returns warnings about the fading of displacements outside a mesh: the number of tetrahedra
 /// between voxels that follow distant parts of the boundary, and possible folds. "" if there are
 /// none. displacements: three floats per node, in output voxels. spacing: the spacing of the
 /// output.
-DEFORMVOLUME_EXPORT std::string FindFaultOfFading(const FadedLinks& links,
+DEFORMVOLUME_EXPORT std::string GetFadingWarning(const FadedLinks& links,
   const std::vector<Tetrahedron>& tetrahedra, const float* displacements, const glm::dvec3& spacing,
   double fadeDistance);
 
 /// Returns a warning if the border of a field moves by too much for FadeDistance, and a part of a
 /// box is outside the field; otherwise "". box: in the indices that IndexToField of the field
 /// takes. spacing: the spacing of the output.
-DEFORMVOLUME_EXPORT std::string FindFaultOfFading(const DisplacementField& field,
+DEFORMVOLUME_EXPORT std::string GetFadingWarning(const DisplacementField& field,
   const IndexBounds& box, const glm::dvec3& spacing, double fadeDistance);
 
 } // namespace deformvolume

@@ -90,7 +90,7 @@ std::uint64_t MappingCache::GetRunBytes(const MeshAtRest& mesh, const MappedVolu
 void MappingCache::Update(
   const MeshAtRest& mesh, const MappedVolume& volume, const std::function<bool(double)>& progress)
 {
-  if (this->HasVoxels() && this->IsCurrent(mesh, volume))
+  if (this->HasLinksOrRuns() && this->IsCurrent(mesh, volume))
   {
     return;
   }
@@ -122,7 +122,7 @@ void MappingCache::Update(
   }
   if (!holdsVoxels)
   {
-    throw Error(DescribeMiss(mesh, volume.Whole));
+    throw Error(DescribeMissedVolume(mesh, volume.Whole));
   }
   this->Mapping = std::move(mapping);
   this->RunBytes = runBytes;

@@ -63,7 +63,7 @@ public:
   /// Whether the mapping has runs and not links.
   bool IsByRuns() const { return this->RunBytes > 0; }
   /// Whether the mapping has links or runs. False after ReleaseVoxels().
-  bool HasVoxels() const
+  bool HasLinksOrRuns() const
   {
     return !this->Mapping.Links.empty() || !this->Mapping.Runs.Runs.empty();
   }

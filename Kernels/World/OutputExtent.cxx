@@ -91,7 +91,7 @@ IndexBounds GetWorldBoxBounds(const double* box, const ImageGeometry& image)
   return TransformBox(image.GetWorldToIndex(), bounds);
 }
 
-Extent GetKept(const Extent& last, const Extent& needed, int granularity)
+Extent GetStableExtent(const Extent& last, const Extent& needed, int granularity)
 {
   const bool isFirst = GetNumberOfPoints(last) == 0;
   const auto roundDown = [=](int index)

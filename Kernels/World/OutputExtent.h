@@ -36,7 +36,8 @@ DEFORMVOLUME_EXPORT IndexBounds GetWorldBoxBounds(const double* box, const Image
 /// An end of the last extent is kept if it still includes `needed` and is at most `granularity`
 /// voxels farther out than the rounded end. So an output that changes little keeps its extent.
 /// last: the last extent; empty if there is none.
-DEFORMVOLUME_EXPORT Extent GetKept(const Extent& last, const Extent& needed, int granularity);
+DEFORMVOLUME_EXPORT Extent GetStableExtent(
+  const Extent& last, const Extent& needed, int granularity);
 
 /// Returns an extent that is extended by `padding` voxels on all sides. Throws an Error if the
 /// result has more than MostOutputVoxels voxels.

@@ -18,29 +18,29 @@ struct Obstacle
   const char* Remedy;
 };
 
-std::optional<Obstacle> FindObstacle(const ResamplerWish& wish)
+std::optional<Obstacle> FindObstacle(const ResamplerRequest& request)
 {
-  if (wish.Deformation == ResamplerWish::Kinds::ForwardField)
+  if (request.Deformation == ResamplerRequest::Kinds::ForwardField)
   {
     return Obstacle{ "forward displacement fields", "connect a tetrahedral mesh" };
   }
-  if (wish.Outside.AreExtrapolated())
+  if (request.Outside.AreExtrapolated())
   {
     return Obstacle{ "the outside mode EXTRAPOLATE", "OutsideMode to DISCARD" };
   }
-  if (wish.Outside.AreKept())
+  if (request.Outside.AreKept())
   {
     return Obstacle{ "the outside mode KEEP", "OutsideMode to DISCARD" };
   }
-  if (wish.HasSmoothCut)
+  if (request.HasSmoothCut)
   {
     return Obstacle{ "smooth cuts", "SmoothCut of vtkCutVolume to off" };
   }
-  if (wish.NeedsJacobian)
+  if (request.NeedsJacobian)
   {
     return Obstacle{ "Jacobians of meshes", "GenerateJacobian to off and no density arrays" };
   }
-  if (wish.CountsFolds)
+  if (request.CountsFolds)
   {
     return Obstacle{ "fold counts of meshes", "GenerateFoldCount to off" };
   }
@@ -49,18 +49,19 @@ std::optional<Obstacle> FindObstacle(const ResamplerWish& wish)
 
 } // namespace
 
-Resampling ChooseResampler(const ResamplerWish& wish, const std::function<bool(Resampling)>& fits)
+Resampling ChooseResampler(
+  const ResamplerRequest& request, const std::function<bool(Resampling)>& fits)
 {
-  if (wish.Deformation == ResamplerWish::Kinds::InverseField)
+  if (request.Deformation == ResamplerRequest::Kinds::InverseField)
   {
-    if (wish.Method && *wish.Method != Resampling::MeshRasterization)
+    if (request.Method && *request.Method != Resampling::MeshRasterization)
     {
       throw Error(
         "An inverse displacement field leads from the output to the volume, so that there "
         "is no sampling mesh to deform. Set Resampler to AUTOMATIC or "
         "MESH_RASTERIZATION.");
     }
-    if (wish.HasSmoothCut)
+    if (request.HasSmoothCut)
     {
       throw Error("An inverse displacement field cannot open smooth cuts, since it does not say "
                   "where the two sides go. Set SmoothCut of vtkCutVolume to off, or take a mesh or "
@@ -68,15 +69,15 @@ Resampling ChooseResampler(const ResamplerWish& wish, const std::function<bool(R
     }
     return Resampling::MeshRasterization;
   }
-  const std::optional<Obstacle> obstacle = FindObstacle(wish);
-  if (obstacle && wish.Method == Resampling::MeshRasterization)
+  const std::optional<Obstacle> obstacle = FindObstacle(request);
+  if (obstacle && request.Method == Resampling::MeshRasterization)
   {
     throw Error(std::string("The resampler MESH_RASTERIZATION cannot do ") + obstacle->Subject +
       ". Set Resampler to EXACT, or " + obstacle->Remedy + ".");
   }
-  if (wish.Method)
+  if (request.Method)
   {
-    return *wish.Method;
+    return *request.Method;
   }
   return !obstacle && !fits(Resampling::Exact) && fits(Resampling::MeshRasterization)
     ? Resampling::MeshRasterization

@@ -13,7 +13,7 @@ namespace deformvolume
 {
 
 /// The input for the choice of a resampler.
-struct ResamplerWish
+struct ResamplerRequest
 {
   /// What deforms the volume.
   enum class Kinds
@@ -44,7 +44,7 @@ struct ResamplerWish
 /// 20 bytes per voxel), and if it supports the deformation: a mesh, with voxels outside it
 /// discarded, without smooth cuts, Jacobians and fold counts.
 DEFORMVOLUME_EXPORT Resampling ChooseResampler(
-  const ResamplerWish& wish, const std::function<bool(Resampling)>& fits);
+  const ResamplerRequest& request, const std::function<bool(Resampling)>& fits);
 
 } // namespace deformvolume
 

@@ -32,7 +32,7 @@ public:
   void Set(const ImageGeometry& grid, const VectorView& vectors, bool isInverse);
   /// Set a forward field of vectors that their owner may change. Update() takes such changes into
   /// account. The vectors are not copied, unless the field has several points per voxel
-  /// (GetStep()).
+  /// (GetFieldStride()).
   void Set(const ImageGeometry& grid, const std::shared_ptr<DeviceVectors>& vectors);
 
   /// Updates the field for a volume and its map to the output. Throws an Error if a vector is not
@@ -63,8 +63,8 @@ private:
     const std::shared_ptr<DeviceVectors>& shared);
   void Locate(const ImageGeometry& volume, const OutputMap& toOutput);
   void Convert(const ImageGeometry& volume, const OutputMap& toOutput);
-  /// If GetStep() is greater than 1, reduces the field to the points that are voxels, and returns
-  /// the indices of these points; otherwise returns an empty list.
+  /// If GetFieldStride() is greater than 1, reduces the field to the points that are voxels, and
+  /// returns the indices of these points; otherwise returns an empty list.
   std::vector<std::size_t> TakeVoxels(const Extent& voxels);
 
   ImageGeometry Grid;

@@ -108,7 +108,7 @@ struct Rounding
 
 } // namespace
 
-std::string DescribeRounding(const ImageGeometry& volume)
+std::string GetRoundingWarning(const ImageGeometry& volume)
 {
   const Rounding rounding(volume);
   return rounding.IsSmall() ? ""
@@ -116,7 +116,7 @@ std::string DescribeRounding(const ImageGeometry& volume)
       ". To avoid that, subtract one offset from all coordinates.";
 }
 
-std::string DescribeRounding(const MeshAtRest& mesh, const ImageGeometry& volume)
+std::string GetRoundingWarning(const MeshAtRest& mesh, const ImageGeometry& volume)
 {
   const Rounding rounding(volume);
   if (rounding.IsSmall())
@@ -140,14 +140,14 @@ std::string DescribeRounding(const MeshAtRest& mesh, const ImageGeometry& volume
                 : "";
 }
 
-std::string FindFaultOfSize(const ImageGeometry& field, const ImageGeometry& volume)
+std::string GetSizeWarning(const ImageGeometry& field, const ImageGeometry& volume)
 {
   const IndexBounds box =
     TransformBox(volume.GetWorldToIndex() * field.GetIndexToWorld(), GetBox(field.PointExtent));
   return IsSmall(box, volume) ? DescribeSmallness("field", GetWorldBox(field), volume) : "";
 }
 
-std::string FindFaultOfSize(const MeshAtRest& mesh, const ImageGeometry& volume)
+std::string GetSizeWarning(const MeshAtRest& mesh, const ImageGeometry& volume)
 {
   IndexBounds box;
   for (const Tetrahedron& tetrahedron : mesh.Tetrahedra)
@@ -181,11 +181,11 @@ void CheckBoxes(const MeshAtRest& mesh, const ImageGeometry& volume)
 {
   if (!FindBox(mesh).Overlaps(GetBox(volume.PointExtent)))
   {
-    throw Error(DescribeMiss(mesh, volume));
+    throw Error(DescribeMissedVolume(mesh, volume));
   }
 }
 
-std::string DescribeMiss(const MeshAtRest& mesh, const ImageGeometry& volume)
+std::string DescribeMissedVolume(const MeshAtRest& mesh, const ImageGeometry& volume)
 {
   const IndexBounds box = FindBox(mesh, volume.GetIndexToWorld());
   return "The deformation mesh at rest holds no voxel of the volume. " +

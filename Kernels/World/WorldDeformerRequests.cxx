@@ -210,16 +210,16 @@ void WorldDeformer::CheckMemory(
 Resampling WorldDeformer::ChooseMethod(
   const WorldRequest& request, const std::vector<VolumeArray>& arrays, const Extent& whole)
 {
-  ResamplerWish wish;
-  using Kinds = ResamplerWish::Kinds;
-  wish.Deformation = this->IsMesh() ? Kinds::Mesh
-    : this->Field.IsInverse()       ? Kinds::InverseField
-                                    : Kinds::ForwardField;
-  wish.Outside = this->Outside;
-  wish.HasSmoothCut = this->Masks.CutTetrahedra != nullptr;
-  wish.NeedsJacobian = request.Jacobians != nullptr || this->HasDensities();
-  wish.CountsFolds = request.FoldCounts != nullptr;
-  return ChooseResampler(wish,
+  ResamplerRequest choice;
+  using Kinds = ResamplerRequest::Kinds;
+  choice.Deformation = this->IsMesh() ? Kinds::Mesh
+    : this->Field.IsInverse()         ? Kinds::InverseField
+                                      : Kinds::ForwardField;
+  choice.Outside = this->Outside;
+  choice.HasSmoothCut = this->Masks.CutTetrahedra != nullptr;
+  choice.NeedsJacobian = request.Jacobians != nullptr || this->HasDensities();
+  choice.CountsFolds = request.FoldCounts != nullptr;
+  return ChooseResampler(choice,
     [&](Resampling method)
     {
       try
@@ -575,12 +575,12 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
   }
   if (request.RestPositions)
   {
-    warn(DescribeRounding(*this->Volume));
+    warn(GetRoundingWarning(*this->Volume));
   }
   if (this->Deformation != Deformations::None && !this->Outside.AreExtrapolated())
   {
-    warn(this->IsMesh() ? FindFaultOfSize(this->Mesh.GetAtRest(), *this->Volume)
-                        : FindFaultOfSize(this->Field.GetGrid(), *this->Volume));
+    warn(this->IsMesh() ? GetSizeWarning(this->Mesh.GetAtRest(), *this->Volume)
+                        : GetSizeWarning(this->Field.GetGrid(), *this->Volume));
   }
   if (this->IsMesh())
   {
@@ -592,7 +592,7 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
     const MeshAtRest mesh = this->Mesh.GetAtRest();
     if (this->Mesh.ArePointsFloats() && !this->Outside.AreExtrapolated())
     {
-      warn(DescribeRounding(mesh, *this->Volume));
+      warn(GetRoundingWarning(mesh, *this->Volume));
     }
     const WorldMasks& masks = this->Masks;
     if (!isRasterized && !masks.Blanked && !masks.ActiveTetrahedra && !masks.CutTetrahedra)
@@ -605,14 +605,14 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
     const FadedLinks& links = this->Mapping.GetMapping().Faded;
     if (!links.IsEmpty() && this->Mapping.IsCurrent(mesh, this->GetMapped()))
     {
-      warn(FindFaultOfFading(links, mesh.Tetrahedra, this->Mesh.GetDisplacements().data(),
+      warn(GetFadingWarning(links, mesh.Tetrahedra, this->Mesh.GetDisplacements().data(),
         this->GetOutputGrid().Spacing, this->Outside.FadeDistance));
     }
   }
   else if (this->Outside.AreKept())
   {
     const Extent& moved = this->Field.IsInverse() ? whole : this->Volume->PointExtent;
-    warn(FindFaultOfFading(this->Field.Get(this->Outside), GetBox(moved),
+    warn(GetFadingWarning(this->Field.Get(this->Outside), GetBox(moved),
       glm::abs(this->GetOutputGrid().Spacing), this->Outside.FadeDistance));
   }
   if (this->HasDensities())

@@ -105,7 +105,7 @@ PointsReport WorldDeformer::DeformPoints(const PointsRequest& request)
       warn(warning);
     }
   }
-  warn(FindFoldsOfFading(
+  warn(GetFoldWarning(
     "border of the deformation moves", -leastFading.load(), this->Outside.FadeDistance));
   return report;
 }

@@ -80,15 +80,15 @@ struct Sums
 Sums FindSums(
   const LatticeBody& lattice, const std::vector<glm::dvec3>& displacements, MaterialModel model)
 {
-  Watch watch(nullptr);
-  FiniteElements elements(watch, lattice.Body);
+  AbortCheck abortCheck(nullptr);
+  FiniteElements elements(abortCheck, lattice.Body);
   elements.SetMaterialModel(model);
   BlockMatrix matrix;
-  matrix.SetPattern(watch, MakeNodePattern(watch, lattice.Body));
-  elements.SetPattern(watch, matrix.GetPattern());
+  matrix.SetPattern(abortCheck, MakeNodePattern(abortCheck, lattice.Body));
+  elements.SetPattern(abortCheck, matrix.GetPattern());
   Sums sums;
-  sums.Energy.push_back(elements.FindForces(watch, displacements, sums.Forces).Energy);
-  elements.AssembleTangent(watch, displacements, true, matrix);
+  sums.Energy.push_back(elements.FindForces(abortCheck, displacements, sums.Forces).Energy);
+  elements.AssembleTangent(abortCheck, displacements, true, matrix);
   const std::size_t nodes = displacements.size();
   const std::vector<unsigned char> isFree(nodes, 1);
   sums.Product.resize(nodes);

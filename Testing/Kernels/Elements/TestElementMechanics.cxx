@@ -216,13 +216,13 @@ TEST_P(ElementModels, TangentIsThatOfTheForces)
   Stretched stretched;
   stretched.NumberAnew();
   const ElasticBody& body = stretched.Lattice.Body;
-  Watch watch(nullptr);
-  FiniteElements elements(watch, body);
+  AbortCheck abortCheck(nullptr);
+  FiniteElements elements(abortCheck, body);
   elements.SetMaterialModel(GetParam());
   BlockMatrix matrix;
-  matrix.SetPattern(watch, MakeNodePattern(watch, body));
-  elements.SetPattern(watch, matrix.GetPattern());
-  elements.AssembleTangent(watch, stretched.Displacements, false, matrix);
+  matrix.SetPattern(abortCheck, MakeNodePattern(abortCheck, body));
+  elements.SetPattern(abortCheck, matrix.GetPattern());
+  elements.AssembleTangent(abortCheck, stretched.Displacements, false, matrix);
   const std::size_t nodes = body.Points.size();
   const std::vector<unsigned char> isFree(nodes, 1);
   std::mt19937 random(5);
@@ -243,8 +243,8 @@ TEST_P(ElementModels, TangentIsThatOfTheForces)
     matrix.Multiply(0, nodes, isFree.data(), direction.data(), product.data());
     std::vector<glm::dvec3> forcesMore;
     std::vector<glm::dvec3> forcesLess;
-    elements.FindForces(watch, more, forcesMore);
-    elements.FindForces(watch, less, forcesLess);
+    elements.FindForces(abortCheck, more, forcesMore);
+    elements.FindForces(abortCheck, less, forcesLess);
     for (std::size_t node = 0; node < nodes; ++node)
     {
       const glm::dvec3 difference = (forcesMore[node] - forcesLess[node]) / (2.0 * step);
@@ -257,12 +257,12 @@ TEST_P(ElementModels, TangentIsThatOfTheForces)
 TEST_P(ElementModels, TangentIsNeverNegative)
 {
   QuadraticLattice lattice({ 2, 2, 3 }, 0.1, MakeMaterial(1e4, 0.45));
-  Watch watch(nullptr);
-  FiniteElements elements(watch, lattice.Body);
+  AbortCheck abortCheck(nullptr);
+  FiniteElements elements(abortCheck, lattice.Body);
   elements.SetMaterialModel(GetParam());
   BlockMatrix matrix;
-  matrix.SetPattern(watch, MakeNodePattern(watch, lattice.Body));
-  elements.SetPattern(watch, matrix.GetPattern());
+  matrix.SetPattern(abortCheck, MakeNodePattern(abortCheck, lattice.Body));
+  elements.SetPattern(abortCheck, matrix.GetPattern());
   const std::size_t nodes = lattice.Body.Points.size();
   const std::vector<unsigned char> isFree(nodes, 1);
   std::mt19937 random(7);
@@ -277,7 +277,7 @@ TEST_P(ElementModels, TangentIsNeverNegative)
       displacements[node] = 0.1 * glm::dvec3(normal(random), normal(random), normal(random));
       direction[node] = glm::dvec3(normal(random), normal(random), normal(random));
     }
-    elements.AssembleTangent(watch, displacements, true, matrix);
+    elements.AssembleTangent(abortCheck, displacements, true, matrix);
     // Power iterations with the identity minus a multiple of the matrix converge to the direction
     // of the least eigenvalue.
     for (int i = 0; i < 20; ++i)

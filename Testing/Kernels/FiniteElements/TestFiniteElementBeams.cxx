@@ -55,7 +55,7 @@ struct SmallStrain
     return this->Solver.GetDisplacements();
   }
 
-  Watch None{ nullptr };
+  AbortCheck None{ nullptr };
   EquilibriumSolver Solver;
   EquilibriumRequest Request;
 };

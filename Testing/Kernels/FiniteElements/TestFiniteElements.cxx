@@ -769,8 +769,8 @@ void Scramble(const LatticeBody& lattice, std::uint32_t seed, FiniteElementModel
 
 std::int64_t CountInverted(const LatticeBody& lattice, const FiniteElementModel& model)
 {
-  Watch watch(nullptr);
-  return CountInvertedSplits(watch, lattice.Body, model.GetDisplacements());
+  AbortCheck abortCheck(nullptr);
+  return CountInvertedSplits(abortCheck, lattice.Body, model.GetDisplacements());
 }
 
 } // namespace

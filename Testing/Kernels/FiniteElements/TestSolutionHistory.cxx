@@ -63,7 +63,7 @@ struct System
     history.Add(solution, right, Vectors(right.size(), glm::dvec3(0.0)));
   }
 
-  Watch Time{ nullptr };
+  AbortCheck Time{ nullptr };
   QuadraticLattice Lattice;
   FiniteElements Elements;
   BlockMatrix Matrix;
@@ -72,8 +72,8 @@ struct System
 
 double Length(const Vectors& vector)
 {
-  Watch watch(nullptr);
-  return std::sqrt(SumOfProducts(watch, vector, vector));
+  AbortCheck abortCheck(nullptr);
+  return std::sqrt(SumOfProducts(abortCheck, vector, vector));
 }
 
 Vectors Combine(double a, const Vectors& first, double b, const Vectors& second)

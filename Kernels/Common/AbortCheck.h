@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeWatch_h
-#define DeformVolumeWatch_h
+#ifndef DeformVolumeAbortCheck_h
+#define DeformVolumeAbortCheck_h
 
 #include "Error.h"
 #include "ParallelFor.h"
@@ -17,16 +17,16 @@ namespace deformvolume
 {
 
 /// Calls a progress callback at most every 5 ms, and aborts when it returns false.
-class Watch
+class AbortCheck
 {
 public:
-  explicit Watch(std::function<bool()> progress)
+  explicit AbortCheck(std::function<bool()> progress)
     : Progress(std::move(progress))
   {
   }
 
   /// Calls the callback if 5 ms have passed. Throws Aborted if it returns false.
-  void Ask()
+  void Check()
   {
     constexpr std::chrono::milliseconds interval(5);
     const auto now = std::chrono::steady_clock::now();
@@ -50,12 +50,12 @@ private:
 /// Calls body(item) for items 0 to items - 1 in sequence, and checks for an abort after every 4096
 /// items. An item should take about a microsecond.
 template <typename Body>
-void ForItems(Watch& watch, std::size_t items, Body&& body)
+void ForItems(AbortCheck& abortCheck, std::size_t items, Body&& body)
 {
   constexpr std::size_t atOnce = 4096;
   for (std::size_t begin = 0; begin < items; begin += atOnce)
   {
-    watch.Ask();
+    abortCheck.Check();
     for (std::size_t item = begin; item < std::min(items, begin + atOnce); ++item)
     {
       body(item);
@@ -66,13 +66,13 @@ void ForItems(Watch& watch, std::size_t items, Body&& body)
 /// Grows a vector to a size, and checks for an abort after every 16 MiB, since the first access to
 /// new memory is slow.
 template <typename Value>
-void Grow(Watch& watch, std::vector<Value>& values, std::size_t size)
+void Grow(AbortCheck& abortCheck, std::vector<Value>& values, std::size_t size)
 {
   constexpr std::size_t atOnce = (std::size_t(1) << 24) / sizeof(Value);
   values.reserve(size);
   while (values.size() < size)
   {
-    watch.Ask();
+    abortCheck.Check();
     values.resize(std::min(size, values.size() + atOnce));
   }
 }
@@ -80,11 +80,11 @@ void Grow(Watch& watch, std::vector<Value>& values, std::size_t size)
 /// Calls body(part) for parts 0 to parts - 1 in parallel, and checks for an abort after every
 /// atOnce parts. `atOnce` parts should take at most about ten milliseconds.
 template <typename Body>
-void ForParts(Watch& watch, std::size_t parts, std::size_t atOnce, Body&& body)
+void ForParts(AbortCheck& abortCheck, std::size_t parts, std::size_t atOnce, Body&& body)
 {
   for (std::size_t begin = 0; begin < parts; begin += atOnce)
   {
-    watch.Ask();
+    abortCheck.Check();
     const std::size_t end = std::min(parts, begin + atOnce);
     ParallelFor(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), 1,
       [&](std::int64_t first, std::int64_t last)
@@ -101,11 +101,11 @@ void ForParts(Watch& watch, std::size_t parts, std::size_t atOnce, Body&& body)
 /// Calls body(item) for items 0 to items - 1 in parallel, and checks for an abort after every 8192
 /// items. An item should take about a microsecond.
 template <typename Body>
-void ForItemsInParallel(Watch& watch, std::size_t items, Body&& body)
+void ForItemsInParallel(AbortCheck& abortCheck, std::size_t items, Body&& body)
 {
   constexpr std::size_t size = 1024;
   constexpr std::size_t partsAtOnce = 8;
-  ForParts(watch, (items + size - 1) / size, partsAtOnce,
+  ForParts(abortCheck, (items + size - 1) / size, partsAtOnce,
     [&](std::size_t part)
     {
       for (std::size_t item = part * size; item < std::min(items, (part + 1) * size); ++item)
