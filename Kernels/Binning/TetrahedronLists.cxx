@@ -3,6 +3,7 @@
 
 #include "HostMemory.h"
 #include "IndexBounds.h" // for GetOutputTransform
+#include "MemoryBudget.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
@@ -60,8 +61,8 @@ void SetInverse(const VoxelGrid& grid, RasterParameters& parameters)
   parameters.HasTurnedAxes = !grid.ToOutput.IsDiagonal();
 }
 
-TetrahedronLists::Counts TetrahedronLists::Make(WorkDevice& device, const cl::Buffer& tetrahedra,
-  const cl::Buffer& positions, const RasterParameters& p)
+TetrahedronLists::Counts TetrahedronLists::Make(WorkDevice& device, MemoryBudget& budget,
+  const cl::Buffer& tetrahedra, const cl::Buffer& positions, const RasterParameters& p)
 {
   ListBuffers& buffers = this->Buffers;
   ReserveLists(device, buffers.Boxes, static_cast<std::uint64_t>(p.Tetrahedra) * sizeof(cl_uint2));
@@ -78,6 +79,13 @@ TetrahedronLists::Counts TetrahedronLists::Make(WorkDevice& device, const cl::Bu
   device.GetQueue().enqueueReadBuffer(buffers.Counters, CL_TRUE, 0, sizeof(counts), counts);
   cleared.Check();
   const cl_uint length = CheckLength(counted);
+  const std::uint64_t needed = std::uint64_t{ length } * sizeof(cl_int) +
+    (serial ? 0 : EntryLists::GetMemoryNeeded(static_cast<std::uint64_t>(p.Tetrahedra), length));
+  const std::uint64_t held = deformvolume::GetMemory(buffers.Lists) + this->Entries.GetMemory();
+  if (needed > held)
+  {
+    budget.CheckRoomFor(needed - held, "on the device for the lists of tetrahedra");
+  }
   ReserveLists(device, buffers.Lists, std::max<std::uint64_t>(length, 1) * sizeof(cl_int));
   if (serial)
   {

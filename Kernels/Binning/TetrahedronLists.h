@@ -14,6 +14,7 @@
 namespace deformvolume
 {
 
+class MemoryBudget;
 class WorkDevice;
 
 /// Returns parameters with the tiles of a slab of the output.
@@ -35,9 +36,10 @@ public:
     std::int64_t Inverted;
     std::int64_t Overstretched;
   };
-  /// Makes the lists. tetrahedra, positions: of the mesh.
-  Counts Make(WorkDevice& device, const cl::Buffer& tetrahedra, const cl::Buffer& positions,
-    const RasterParameters& parameters);
+  /// Makes the lists. tetrahedra, positions: of the mesh. Throws MemoryError if the budget does not
+  /// suffice for them: tetrahedra that overlap many tiles need more than GetMemoryNeeded().
+  Counts Make(WorkDevice& device, MemoryBudget& budget, const cl::Buffer& tetrahedra,
+    const cl::Buffer& positions, const RasterParameters& parameters);
 
   /// Returns the indices at which each tile's list begins in GetLists().
   const cl::Buffer& GetBegins() const { return this->Buffers.Begins; }

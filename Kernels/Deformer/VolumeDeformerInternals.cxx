@@ -65,7 +65,7 @@ VolumeDeformer::Internals::Parts::Parts(WorkDevice& device, MemoryBudget& budget
   , Incremental(device, this->Volume)
   , Source(device, this->Volume, this->Incremental.GetObserver())
   , Exact(device, budget, this->Volume, this->Source)
-  , Rasterizer(device, this->Volume)
+  , Rasterizer(device, budget, this->Volume)
 {
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 namespace deformvolume
 {
@@ -118,9 +119,9 @@ bool DeviceArrays::SetOptions(const std::vector<VolumeArray>& arrays)
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
     VolumeArray& set = this->Described[i];
-    // A background of NaN always counts as changed.
+    // Compared as bytes, because NaN is not equal to itself.
     changed = changed || set.Categorical != arrays[i].Categorical ||
-      !(set.Background == arrays[i].Background);
+      std::memcmp(&set.Background, &arrays[i].Background, sizeof(set.Background)) != 0;
     set.Categorical = arrays[i].Categorical;
     set.Background = arrays[i].Background;
   }

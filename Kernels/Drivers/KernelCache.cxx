@@ -54,6 +54,9 @@ std::string GetDefaultDirectory()
   return home.empty() ? "" : home + "/.cache/pocl/kcache";
 }
 
+/// PoCL terminates the process if the disk is full. The kernels of a process take a few MiB.
+constexpr unsigned long LeastSpace = 16UL << 20;
+
 bool IsUsable(const std::string& directory)
 {
   if (directory.empty())
@@ -64,7 +67,8 @@ bool IsUsable(const std::string& directory)
   std::filesystem::create_directories(directory, error);
   struct statvfs info;
   return access(directory.c_str(), R_OK | W_OK | X_OK) == 0 &&
-    statvfs(directory.c_str(), &info) == 0 && !(info.f_flag & (ST_NOEXEC | ST_RDONLY));
+    statvfs(directory.c_str(), &info) == 0 && !(info.f_flag & (ST_NOEXEC | ST_RDONLY)) &&
+    (info.f_blocks == 0 || info.f_bavail * info.f_frsize >= LeastSpace); // 0: not known
 }
 
 std::string MakeTemporaryDirectory(const std::string& parent)
@@ -79,20 +83,30 @@ std::string MakeTemporaryDirectory(const std::string& parent)
   return buffer.data();
 }
 
-/// The private directory, which is removed at the end of the process.
+/// The private directory, which is removed at the end of the process that made it. Processes forked
+/// from it end by the same function.
 std::string TemporaryDirectory;
+pid_t TemporaryDirectoryOwner = 0;
 void RemoveTemporaryDirectory()
 {
-  std::error_code error;
-  std::filesystem::remove_all(TemporaryDirectory, error);
+  if (getpid() == TemporaryDirectoryOwner)
+  {
+    std::error_code error;
+    std::filesystem::remove_all(TemporaryDirectory, error);
+  }
 }
 
 void Prepare()
 {
   const char* const lockedFile = "/deformvolume.lock";
-  const std::string directory = GetDefaultDirectory();
+  std::string directory = GetDefaultDirectory();
   if (IsUsable(directory))
   {
+    if (directory.front() != '/') // the current directory may change
+    {
+      directory = std::filesystem::absolute(directory).string();
+      setenv("POCL_CACHE_DIR", directory.c_str(), 1);
+    }
     LockedFile = directory + lockedFile;
     return;
   }
@@ -102,11 +116,13 @@ void Prepare()
   {
     Problem = "The kernels cannot be compiled: neither the kernel cache \"" + directory +
       "\" nor \"" + parent +
-      "\" is a directory that can be written to and executed from. Set POCL_CACHE_DIR to one.";
+      "\" is a directory that can be written to and executed from, with 16 MiB of free space. Set "
+      "POCL_CACHE_DIR to one.";
     return;
   }
   LockedFile = TemporaryDirectory + lockedFile;
   setenv("POCL_CACHE_DIR", TemporaryDirectory.c_str(), 1);
+  TemporaryDirectoryOwner = getpid();
   std::atexit(RemoveTemporaryDirectory);
 }
 
@@ -138,7 +154,15 @@ KernelCacheLock::KernelCacheLock(bool isUsed)
   {
     return;
   }
-  Lock = open(LockedFile.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  const auto openFile = [] { return open(LockedFile.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666); };
+  Lock = openFile();
+  if (Lock < 0 && errno == ENOENT)
+  {
+    // Somebody has removed the directory, and PoCL does not make it again.
+    std::error_code error;
+    std::filesystem::create_directories(std::filesystem::path(LockedFile).parent_path(), error);
+    Lock = openFile();
+  }
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   // On a file system without locks, flock() fails with another error.
   while (Lock >= 0 && flock(Lock, LOCK_EX | LOCK_NB) != 0 &&

@@ -12,8 +12,11 @@
 #include "StagedCopies.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdlib>
+
+#include <unistd.h>
 
 namespace deformvolume
 {
@@ -180,6 +183,14 @@ std::vector<OpenCLDevice> FindDevices()
   static std::mutex mutex;
   static auto* const devices = new std::vector<OpenCLDevice>;
   static std::size_t listed = 0; // number of added drivers in the list
+  static std::atomic<pid_t> process{ 0 };
+  // Check this before the lock is taken: another thread may have held it during the fork.
+  if (process != 0 && process != getpid())
+  {
+    throw Error("This process was forked from a process that had used OpenCL, and OpenCL does not "
+                "work after a fork. Fork before the first use of a device, or start a new program "
+                "(in Python: the start method \"spawn\" of multiprocessing).");
+  }
   const std::lock_guard<std::mutex> lock(mutex);
   const std::size_t added = AddedDrivers::Get().GetCount();
   if (devices->empty() || added != listed)
@@ -188,6 +199,7 @@ std::vector<OpenCLDevice> FindDevices()
     LimitDeviceThreads();
     *devices = ListDevices();
     listed = added;
+    process = devices->empty() ? 0 : getpid();
   }
   return *devices;
 }

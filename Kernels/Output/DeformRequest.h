@@ -23,9 +23,8 @@ enum class Resampling
   ExactByCell,
   /// Exact, with the CPU kernel that handles several cells in the lanes of vector registers. For
   /// any arrays. Linear arrays of one component, of type float or 8- or 16-bit integer, are
-  /// interpolated in single precision. Throws Error if the output has more than 32,768 voxels on an
-  /// axis or 2^31 voxels in total, or if work-items of the device have no vector registers of their
-  /// own.
+  /// interpolated in single precision. Throws Error if the whole output has more than 32,768 voxels
+  /// on an axis, or if work-items of the device have no vector registers of their own.
   ExactByLanes,
   /// Exact, with the GPU kernel in which each work-item is a lane and handles a column of cells.
   /// Arrays and outputs as for ExactByLanes. Throws Error if the device has too little local

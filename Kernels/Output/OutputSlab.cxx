@@ -9,7 +9,6 @@
 #include "SlabSizes.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace deformvolume
@@ -215,18 +214,18 @@ SlabCounts OutputSlab::ReadCounts(Launches& launches, bool covered)
 bool OutputSlab::FitsLanes() const
 {
   // Positions in 1/256 voxel are exact in float up to 2^24. Relative positions fit 32 bits if the
-  // output begins within 2^22 voxels: positions at rest lie within 2^21.
+  // output begins within 2^22 voxels: positions at rest lie within 2^21. The whole extent decides,
+  // so that values do not depend on how the output is divided.
   constexpr int farthest = 1 << 22;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const int first = this->GetExtent()[2 * axis];
-    if (GetSize(this->GetExtent(), axis) > 32768 || first < -farthest || first > farthest)
+    const int first = this->WholeExtent[2 * axis];
+    if (GetSize(this->WholeExtent, axis) > 32768 || first < -farthest || first > farthest)
     {
       return false;
     }
   }
-  return this->GetNumberOfVoxels() <=
-    static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max());
+  return true;
 }
 
 void OutputSlab::SetParameters(KernelParameters& parameters) const

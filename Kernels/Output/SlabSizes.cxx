@@ -5,6 +5,7 @@
 #include "OutputWinners.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace deformvolume
 {
@@ -22,11 +23,15 @@ std::vector<Extent> SplitIntoSlabs(const Extent& output, const std::vector<Volum
   {
     widest = std::max<std::uint64_t>(widest, GetTupleSize(array));
   }
-  const std::uint64_t plane = static_cast<std::uint64_t>(GetSize(output, 0)) *
-    static_cast<std::uint64_t>(GetSize(output, 1)) * widest;
+  const std::uint64_t voxels =
+    static_cast<std::uint64_t>(GetSize(output, 0)) * static_cast<std::uint64_t>(GetSize(output, 1));
+  const std::uint64_t plane = voxels * widest;
   CheckAllocation(
     plane, allocationLimit, "The values of a slice of the output", "Use smaller output bounds");
-  const std::uint64_t planes = allocationLimit / plane;
+  // Resampling by lanes and columns counts the voxels of a slab with 32 bits.
+  constexpr std::uint64_t most = std::numeric_limits<std::int32_t>::max();
+  const std::uint64_t planes =
+    std::max<std::uint64_t>(std::min(allocationLimit / plane, most / voxels), 1);
   std::vector<Extent> slabs;
   for (std::int64_t z = output[4]; z <= output[5];)
   {

@@ -264,7 +264,7 @@ void MeshRasterizer::Make(
   {
     // The lists of each slab are made from all tetrahedra.
     const TetrahedronLists::Counts counts =
-      this->Lists.Make(*this->Device, this->Tetrahedra, this->Positions, p);
+      this->Lists.Make(*this->Device, *this->Budget, this->Tetrahedra, this->Positions, p);
     if (counts.Overstretched > 0)
     {
       throw Error(std::to_string(counts.Overstretched) +

@@ -21,6 +21,7 @@ namespace deformvolume
 {
 
 class DeviceVolume;
+class MemoryBudget;
 class WorkDevice;
 
 /// Resamples by rasterizing the tetrahedra of the deformation mesh into the output
@@ -30,8 +31,9 @@ class WorkDevice;
 class MeshRasterizer : public SlabResampler
 {
 public:
-  MeshRasterizer(WorkDevice& device, const DeviceVolume& volume)
+  MeshRasterizer(WorkDevice& device, MemoryBudget& budget, const DeviceVolume& volume)
     : Device(&device)
+    , Budget(&budget)
     , Volume(&volume)
   {
   }
@@ -49,7 +51,7 @@ public:
   void SetField(const DisplacementField& inverse);
 
   /// Discards the mesh or the field.
-  void Clear() { *this = MeshRasterizer(*this->Device, *this->Volume); }
+  void Clear() { *this = MeshRasterizer(*this->Device, *this->Budget, *this->Volume); }
 
   bool HasMesh() const { return !this->RestNodes.empty(); }
   bool HasField() const { return this->FieldVectors() != nullptr; }
@@ -87,6 +89,7 @@ private:
   cl_uint SetDeformationArguments(cl::Kernel& kernel) const;
 
   WorkDevice* Device;
+  MemoryBudget* Budget;
   const DeviceVolume* Volume;
   std::vector<double> RestNodes;
   std::size_t NumberOfTetrahedra = 0;

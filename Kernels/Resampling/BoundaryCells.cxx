@@ -55,9 +55,10 @@ cl::Program GetBoundaryProgram(
 
 } // namespace
 
-BoundaryCells::BoundaryCells(
-  WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches)
+BoundaryCells::BoundaryCells(WorkDevice& device, MemoryBudget& budget, DeviceVolume& volume,
+  const DisplacementSource& source, Launches& launches)
   : Device(device)
+  , Budget(budget)
   , Volume(volume)
   , Source(source)
   , Launched(launches)
@@ -241,7 +242,7 @@ void BoundaryCells::Run(
   }
   const QueueGuard guard(queue);
   this->MoveCorners();
-  this->Counts = this->Lists.Make(this->Device, this->Pieces, this->Positions, r);
+  this->Counts = this->Lists.Make(this->Device, this->Budget, this->Pieces, this->Positions, r);
   const std::vector<cl_uint> tiles = ListTiles(r, patches);
   if (!tiles.empty())
   {

@@ -17,6 +17,7 @@ class DeviceVolume;
 class DisplacementSource;
 class Launches;
 class OutputSlab;
+class MemoryBudget;
 class WorkDevice;
 
 /// Resamples the cells of the sampling mesh that the boundary of the deformation mesh crosses. It
@@ -25,8 +26,8 @@ class WorkDevice;
 class BoundaryCells
 {
 public:
-  BoundaryCells(
-    WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches);
+  BoundaryCells(WorkDevice& device, MemoryBudget& budget, DeviceVolume& volume,
+    const DisplacementSource& source, Launches& launches);
 
   /// Sets the boundary of the mesh or field of the displacement source. tetrahedra: the tetrahedra
   /// of the mesh; null for a field.
@@ -60,6 +61,7 @@ private:
     const RasterParameters& tiles, const std::vector<std::uint32_t>* patches);
 
   WorkDevice& Device;
+  MemoryBudget& Budget;
   DeviceVolume& Volume;
   const DisplacementSource& Source;
   Launches& Launched;

@@ -15,7 +15,7 @@ ExactResampler::ExactResampler(
   , Source(source)
   , Launched(device)
   , Exact(device, volume, source, this->Launched)
-  , Boundary(device, volume, source, this->Launched)
+  , Boundary(device, budget, volume, source, this->Launched)
 {
 }
 

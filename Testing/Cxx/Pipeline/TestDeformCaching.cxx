@@ -8,6 +8,8 @@
 #include <vtkShortArray.h>
 #include <vtkStringArray.h>
 
+#include <limits>
+
 using namespace filterTesting;
 
 namespace
@@ -294,3 +296,14 @@ TEST(DeformCaching, OutputOnDevice)
 }
 
 } // namespace
+
+// NaN is not equal to itself, but such a background has not changed.
+TEST(DeformCaching, BackgroundOfNaN)
+{
+  Counted counted;
+  counted.Subject.Filter->SetBackgroundValue(std::numeric_limits<double>::quiet_NaN());
+  counted.Subject.Update();
+  counted.Subject.Filter->Modified();
+  counted.Subject.Update();
+  EXPECT_EQ(GetReported(counted.Subject.Filter, "Bricks resampled"), 0);
+}

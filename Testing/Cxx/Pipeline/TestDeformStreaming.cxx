@@ -301,3 +301,22 @@ TEST_F(DeformStreaming, Divisions)
     CheckStreamer(from, whole, divisions);
   }
 }
+
+// Such an output is resampled in double precision. A part of it must be, too, although a volume of
+// its size is resampled in single precision.
+TEST_F(DeformStreaming, LongAxis)
+{
+  Case from{ "Long axis", divisionCases::MakeVolume({ { 0, 32999, 0, 2, 0, 2 } }), nullptr };
+  auto field =
+    MakeImage({ { 0, 1100, 0, 1, 0, 1 } }, glm::dvec3(30.0, 2.0, 2.0), glm::dvec3(3.0, -2.0, 1.0));
+  SetDisplacements(field,
+    [](const glm::dvec3& p) { return p + glm::dvec3(std::sin(p.x), 0.0, 0.2 * std::cos(p.x)); });
+  from.Deformation = field;
+  from.Set = [](vtkDeformVolumeFilter* filter) { filter->SetOutputBoundsModeToVolumeBounds(); };
+  const auto whole = MakeWhole(from);
+  Streamed part(from);
+  const Extent extent{ { 1000, 20999, 0, 2, 0, 2 } };
+  part.Filter->UpdateInformation();
+  EXPECT_TRUE(part.Filter->UpdateExtent(extent.data()));
+  EXPECT_TRUE(IsPartOf(part.Filter->GetOutput(), whole));
+}

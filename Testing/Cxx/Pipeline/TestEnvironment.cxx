@@ -6,6 +6,11 @@
 
 #include <vtkStringArray.h>
 
+#include <filesystem>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
 using namespace filterTesting;
 
 namespace
@@ -81,6 +86,37 @@ TEST_F(Environment, NoHome)
 TEST_F(Environment, NoCache)
 {
   this->Fails("POCL_CACHE_DIR");
+}
+
+// The cache is a relative path. The current directory changes, and somebody removes the cache: the
+// kernels that are compiled then are written to the same place.
+TEST_F(Environment, RemovedCache)
+{
+  const std::filesystem::path cache = std::filesystem::absolute("RemovedCache");
+  this->Succeeds();
+  EXPECT_TRUE(std::filesystem::exists(cache));
+  std::filesystem::current_path(std::filesystem::temp_directory_path());
+  std::filesystem::remove_all(cache);
+  this->Subject.Filter->SetInterpolationToCubicInterpolation();
+  this->Succeeds();
+  EXPECT_TRUE(std::filesystem::exists(cache));
+  std::filesystem::remove_all(cache);
+}
+
+TEST_F(Environment, Fork)
+{
+  this->Succeeds();
+  const pid_t child = fork();
+  if (child == 0)
+  {
+    alarm(60); // ends the child if it hangs
+    this->Fails("forked");
+    _exit(testing::Test::HasFailure() ? 1 : 0);
+  }
+  int status = -1;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  this->Succeeds();
 }
 
 TEST_F(Environment, NoLinker)

@@ -3,6 +3,7 @@
 // Tests misuse, limits, and that results do not depend on the size of work-groups. With a given
 // size of work-groups, CPUs make the lists as other devices do.
 #include "Error.h"
+#include "MemoryBudget.h"
 #include "Tetrahedron.h"
 #include "TetrahedronLists.h"
 #include "WorkDevice.h"
@@ -215,7 +216,9 @@ protected:
       this->Device.Send(c.Positions.data(), c.Positions.size() * sizeof(Position), cl::Buffer());
     RasterParameters p = c.Parameters;
     p.Tetrahedra = static_cast<int>(c.Tetrahedra.size());
-    const TetrahedronLists::Counts counts = this->Made.Make(this->Device, tetrahedra, positions, p);
+    MemoryBudget budget(this->Device, [] { return std::uint64_t{ 0 }; });
+    const TetrahedronLists::Counts counts =
+      this->Made.Make(this->Device, budget, tetrahedra, positions, p);
     inverted = counts.Inverted;
     this->Overstretched = counts.Overstretched;
     const cl::CommandQueue& queue = this->Device.GetQueue();

@@ -80,6 +80,31 @@ TEST(MeshRasterization, MisuseLeavesTheDeformerUsable)
   ExpectEqualsReference(good, arrays, Rasterize(deformer, good, arrays));
 }
 
+// Tetrahedra that overlap many tiles need more memory for their lists than is estimated.
+TEST(MeshRasterization, NotEnoughMemoryForLists)
+{
+  const RasterCase wild = MakeRasterCase({ { 0, 19, 0, 19, 0, 19 } }, 12, MakeJitter(5, 30.0));
+  const UsualArrays usual(wild.GetNumberOfVoxels());
+  const std::vector<VolumeArray> arrays = usual.Get();
+  VolumeDeformer deformer;
+  Load(deformer, wild, arrays);
+  Rasterize(deformer, wild, arrays);
+  const std::uint64_t used = deformer.GetDeviceMemory();
+  std::string error;
+  // The first limits do not suffice for the estimate.
+  for (std::uint64_t limit = used / 8; error.find("lists of tetrahedra") == std::string::npos;
+       limit += used / 16)
+  {
+    ASSERT_LT(limit, used) << error;
+    deformer.ReleaseMemory();
+    deformer.SetMemoryLimit(limit);
+    Load(deformer, wild, arrays);
+    error = GetError([&] { Rasterize(deformer, wild, arrays); });
+  }
+  deformer.SetMemoryLimit(used + used / 8);
+  EXPECT_NO_THROW(Rasterize(deformer, wild, arrays));
+}
+
 TEST(MeshRasterization, AbortThrows)
 {
   const RasterCase good = MakeRasterCase(Volume, 2, Wave, { { 1, 1, 1 } });

@@ -2,6 +2,7 @@
 // Copies from and to a device with memory of its own while it makes the lists of tetrahedra.
 #include "DeviceNeeds.h"
 #include "FakeDriver.h"
+#include "MemoryBudget.h"
 #include "Tetrahedron.h"
 #include "TetrahedronLists.h"
 #include "WorkDevice.h"
@@ -28,6 +29,7 @@ TEST(MeshRasterizationGraphics, ListsStayOnTheDevice)
     p.TileCount[axis] = axis == 0 ? 2 : 8;
   }
   WorkDevice device;
+  MemoryBudget budget(device, [] { return std::uint64_t{ 0 }; });
   const cl::Buffer nodes =
     device.Send(positions.data(), positions.size() * sizeof(cl_int), cl::Buffer());
   const cl::Buffer mesh =
@@ -37,7 +39,7 @@ TEST(MeshRasterizationGraphics, ListsStayOnTheDevice)
   driver.BytesRead = 0;
   driver.BytesWritten = 0;
   driver.LaunchesWithoutGroup = 0;
-  EXPECT_EQ(lists.Make(device, mesh, nodes, p).Inverted, 0);
+  EXPECT_EQ(lists.Make(device, budget, mesh, nodes, p).Inverted, 0);
   EXPECT_EQ(driver.BytesRead, 2 * sizeof(cl_uint) + sizeof(cl_ulong));
   EXPECT_EQ(driver.BytesWritten, 2 * sizeof(cl_uint));
   EXPECT_EQ(driver.LaunchesWithoutGroup, 0);
