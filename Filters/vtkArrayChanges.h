@@ -10,8 +10,6 @@
  * The filter uses the logs of these arrays:
  * - the vectors and the points of the deformation mesh (ports 1 and 2), or the vectors of a
  *   displacement field,
- * - the connectivity of the cells of the mesh (vtkCellArray::GetConnectivityArray(), one component:
- *   the tuples 4 c to 4 c + 3 are the nodes of tetrahedron c),
  * - "ActiveTetrahedra", "BoundaryDistance" and, unless there is a vtkValidPointMask, vtkGhostType
  *   of the points of the volume (port 0).
  *
@@ -25,10 +23,9 @@
  *
  * From SetArray() on, all tuples that are written have to be logged. AddTuples() marks the array as
  * modified. An array that is marked as modified by something else counts as changed in all tuples,
- * so do not call its Modified() yourself. VTK does not pass the modification of a connectivity on
- * to its grid: call Modified() of the grid as well. Appended tuples need not be logged, because the
- * number of tuples shows them, unless tuples were removed since the last update. A copy of an array
- * has no log.
+ * so do not call its Modified() yourself. Appended tuples need not be logged, because the number of
+ * tuples shows them, unless tuples were removed since the last update. A copy of an array has no
+ * log.
  *
  * The log keeps the last changes, about 65,000 ranges. A consumer that last read the array before
  * these changes compares the whole array.

@@ -388,7 +388,7 @@ MUTATIONS = {
     "rest-failed": ("Filters/DeformationMesh/RestMesh.cxx", "hasFailed = this->ShapeIsOld;", "hasFailed = false;",
                     ["Cxx.TestDeformShortArrays"]),
     "cell-points": ("Filters/DeformationMesh/RestMesh.cxx",
-                    "if (!this->CellsDependOnPoints || !this->HavePointsChanged(rest, source))", "if (true)",
+                    "(!this->CellsDependOnPoints || !this->HavePointsChanged(rest, source));", "true;",
                     ["Cxx.TestDeformMeshes", "Cxx.TestHigherOrderCells"]),
     "mask-valid": ("Filters/Arrays/MaskArray.cxx", "isValid == 0 ? vtkDataSetAttributes::HIDDENPOINT : 0", "0",
                    ["Cxx.TestDeformMasks"]),

@@ -35,21 +35,6 @@ void AddMasks(Stamp& stamp, vtkDataSet* grid)
   }
 }
 
-Stamp GetCellFormStamp(vtkUnstructuredGrid* grid)
-{
-  Stamp stamp;
-  stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(grid->GetNumberOfCells()));
-  AddArray(stamp, grid->GetCells() ? grid->GetCells()->GetOffsetsArray() : nullptr);
-  AddArray(stamp, GetCellTypes(grid));
-  AddMasks(stamp, grid);
-  AddArray(stamp, grid->GetCellData()->GetHigherOrderDegrees());
-  if (HasPolyhedronFaces(grid))
-  {
-    stamp.emplace_back(grid, grid->vtkObject::GetMTime()); // changes with the faces
-  }
-  return stamp;
-}
-
 Stamp GetCellArraysStamp(const MeshParts& parts)
 {
   Stamp stamp;
@@ -60,8 +45,15 @@ Stamp GetCellArraysStamp(const MeshParts& parts)
     vtkCellArray* cells = grid->GetCells();
     stamp.emplace_back(cells, cells ? cells->GetMTime() : 0);
     AddArray(stamp, cells ? cells->GetConnectivityArray() : nullptr);
-    const Stamp form = GetCellFormStamp(grid);
-    stamp.insert(stamp.end(), form.begin(), form.end());
+    stamp.emplace_back(nullptr, static_cast<vtkMTimeType>(grid->GetNumberOfCells()));
+    AddArray(stamp, cells ? cells->GetOffsetsArray() : nullptr);
+    AddArray(stamp, GetCellTypes(grid));
+    AddMasks(stamp, grid);
+    AddArray(stamp, grid->GetCellData()->GetHigherOrderDegrees());
+    if (HasPolyhedronFaces(grid))
+    {
+      stamp.emplace_back(grid, grid->vtkObject::GetMTime()); // changes with the faces
+    }
   }
   return stamp;
 }

@@ -18,10 +18,6 @@ std::array<vtkAbstractArray*, 3> FindMasks(vtkDataSet* grid);
 /// Adds these arrays to a stamp.
 void AddMasks(Stamp& stamp, vtkDataSet* grid);
 
-/// Stamp of the arrays of a grid's cells without the connectivity: arrays, modification times and
-/// sizes.
-Stamp GetCellFormStamp(vtkUnstructuredGrid* grid);
-
 /// Stamp of all arrays of the cells of a mesh: arrays, modification times and sizes.
 Stamp GetCellArraysStamp(const MeshParts& parts);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RestMesh.h"
 
-#include "CellComparison.h"
 #include "DeformationSource.h"
 #include "Error.h"
 #include "MeshCells.h"
@@ -25,14 +24,6 @@ bool IsRestMade(const DeformationSource& source)
   return source.Rest ? source.RestIsMade : source.ShapeIsMade;
 }
 
-bool AreEqual(
-  const std::vector<TetrahedronChange>& first, const std::vector<TetrahedronChange>& second)
-{
-  return std::equal(first.begin(), first.end(), second.begin(), second.end(),
-    [](const TetrahedronChange& a, const TetrahedronChange& b)
-    { return a.Number == b.Number && a.After == b.After; });
-}
-
 // Lists the tetrahedra with other nodes. Returns nothing if the numbers of tetrahedra differ.
 std::optional<std::vector<TetrahedronChange>> FindDifferences(
   const std::vector<Tetrahedron>& before, const std::vector<Tetrahedron>& after)
@@ -50,14 +41,6 @@ std::optional<std::vector<TetrahedronChange>> FindDifferences(
     }
   }
   return differences;
-}
-
-void Apply(const std::vector<TetrahedronChange>& changes, std::vector<Tetrahedron>& tetrahedra)
-{
-  for (const TetrahedronChange& change : changes)
-  {
-    tetrahedra[change.Number] = change.After;
-  }
 }
 
 // Whether all nodes of the tetrahedra are less than count.
@@ -91,12 +74,10 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   const MeshStamp restCells = MeshStamp::OfCells(rest, IsRestMade(source));
   const MeshStamp shapeCells = MeshStamp::OfCells(shape, source.ShapeIsMade);
   CellReading cells = this->ReadCells(shape, rest, source, restCells, shapeCells);
-  std::vector<CellMemory> cellMemories = GetCellMemories(rest);
   const std::size_t nodes = GetNumberOfNodes(rest);
   const std::size_t nodesBefore = this->Points.size() - this->Derived.GetCount();
   const bool hasFailed = this->ShapeIsOld;
   this->RestCells = this->ShapeCells = MeshStamp(); // equal no other stamps if a call below throws
-  this->RestCellMemories.clear();
   // The indices of derived nodes follow those of all other nodes.
   const bool keepsDerived =
     !cells.Derived && (this->Derived.GetCount() == 0 || nodes == nodesBefore);
@@ -121,12 +102,21 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   }
   if (!isSameShape)
   {
-    this->SetShape(std::move(cells));
+    ++this->ShapeVersion;
+    ++this->ConnectivityVersion;
+    this->LastChanges.reset();
   }
   else if (!cells.Differences->empty() || nodes != nodesBefore)
   {
-    this->SetConnectivity(std::move(*cells.Differences));
+    ++this->ConnectivityVersion;
+    this->LastChanges = std::move(cells.Differences);
   }
+  if (!cells.All.empty())
+  {
+    this->Tetrahedra = std::move(cells.All);
+  }
+  this->IgnoredCells = cells.Ignored;
+  this->WrongOrder = cells.WrongOrder;
   // After a failure the points that tetrahedra use may have been removed already.
   if ((nodes < nodesBefore || hasFailed) && !AreNodes(this->Tetrahedra, this->Points.size()))
   {
@@ -142,31 +132,6 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   this->CellsDependOnPoints = cells.DependOnPoints;
   this->RestCells = restCells;
   this->ShapeCells = shapeCells;
-  this->RestCellMemories = std::move(cellMemories);
-}
-
-std::optional<RestMesh::Changes> RestMesh::CompareCells(
-  const MeshParts& shape, const MeshParts& rest, bool sameRest, bool sameShape, bool shared) const
-{
-  if (!this->IgnoredCells.empty() || !this->WrongOrder.empty() || this->Derived.GetCount() > 0 ||
-    this->Tetrahedra.empty())
-  {
-    return {};
-  }
-  std::optional<Changes> differences = sameRest
-    ? Changes()
-    : deformvolume::FindDifferences(rest, this->Tetrahedra, this->RestCellMemories);
-  if (differences && !shared)
-  {
-    // Both meshes had these tetrahedra when they were read.
-    const std::optional<Changes> others =
-      sameShape ? Changes() : deformvolume::FindDifferences(shape, this->Tetrahedra, {});
-    if (!others || !AreEqual(*differences, *others))
-    {
-      return {};
-    }
-  }
-  return differences;
 }
 
 bool RestMesh::HavePointsChanged(const MeshParts& rest, const DeformationSource& source) const
@@ -210,21 +175,17 @@ bool RestMesh::HavePointsChanged(const MeshParts& rest, const DeformationSource&
 RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshParts& rest,
   const DeformationSource& source, const MeshStamp& restCells, const MeshStamp& shapeCells)
 {
-  const bool shared = shapeCells.HasArraysOf(restCells);
-  const bool sameRest = restCells.IsThatOf(this->RestCells);
-  const bool sameShape = shapeCells.IsThatOf(this->ShapeCells);
   CellReading reading;
   reading.Ignored = this->IgnoredCells;
   reading.WrongOrder = this->WrongOrder;
   reading.DependOnPoints = this->CellsDependOnPoints;
-  // Otherwise all cells are read.
-  if (!this->CellsDependOnPoints || !this->HavePointsChanged(rest, source))
+  const bool isSameRest = restCells.IsThatOf(this->RestCells) &&
+    (!this->CellsDependOnPoints || !this->HavePointsChanged(rest, source));
+  if (isSameRest)
   {
-    reading.Differences = sameRest && (sameShape || shared)
-      ? Changes()
-      : this->CompareCells(shape, rest, sameRest, sameShape, shared);
+    reading.Differences = Changes();
   }
-  if (!reading.Differences)
+  else
   {
     MeshCells cells = deformvolume::ReadCells(rest, rest, source.Derived);
     if (cells.Tetrahedra.empty())
@@ -233,12 +194,6 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
         (cells.Ignored.empty() ? std::string() : ", but " + cells.Ignored) +
         ". Use a mesh of three-dimensional cells that can be split into tetrahedra, and that are "
         "not hidden by vtkGhostType or vtkValidPointMask.");
-    }
-    if (!shared &&
-      deformvolume::ReadCells(shape, rest, source.Derived).Tetrahedra != cells.Tetrahedra)
-    {
-      throw Error("The cells of the deformation mesh are not those of the rest configuration. "
-                  "Use two configurations of one mesh.");
     }
     reading.Ignored = cells.Ignored;
     reading.WrongOrder = cells.WrongOrder;
@@ -249,6 +204,15 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
     }
     reading.Differences = FindDifferences(this->Tetrahedra, cells.Tetrahedra);
     reading.All = std::move(cells.Tetrahedra);
+  }
+  const bool isCompared =
+    shapeCells.HasArraysOf(restCells) || (isSameRest && shapeCells.IsThatOf(this->ShapeCells));
+  if (!isCompared &&
+    deformvolume::ReadCells(shape, rest, source.Derived).Tetrahedra !=
+      (isSameRest ? this->Tetrahedra : reading.All))
+  {
+    throw Error("The cells of the deformation mesh are not those of the rest configuration. Use "
+                "two configurations of one mesh.");
   }
   return reading;
 }
@@ -351,30 +315,6 @@ bool RestMesh::HaveSameShape(const CellReading& cells) const
         }
         return inPlace;
       });
-}
-
-void RestMesh::SetShape(CellReading&& cells)
-{
-  if (!cells.All.empty())
-  {
-    this->Tetrahedra = std::move(cells.All);
-  }
-  else
-  {
-    Apply(*cells.Differences, this->Tetrahedra);
-  }
-  this->IgnoredCells = cells.Ignored;
-  this->WrongOrder = cells.WrongOrder;
-  ++this->ShapeVersion;
-  ++this->ConnectivityVersion;
-  this->LastChanges.reset();
-}
-
-void RestMesh::SetConnectivity(Changes&& changes)
-{
-  Apply(changes, this->Tetrahedra);
-  ++this->ConnectivityVersion;
-  this->LastChanges = std::move(changes);
 }
 
 std::optional<std::vector<TetrahedronChange>> RestMesh::GetChanges(std::uint64_t version) const

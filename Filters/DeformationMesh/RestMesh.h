@@ -2,7 +2,6 @@
 #ifndef DeformVolumeRestMesh_h
 #define DeformVolumeRestMesh_h
 
-#include "CellComparison.h"
 #include "DeformationMesh.h"
 #include "DerivedNodes.h"
 #include "ImageGeometry.h"
@@ -66,7 +65,7 @@ private:
   struct CellReading
   {
     std::optional<Changes> Differences;  // nothing: the number of tetrahedra has changed
-    std::vector<Tetrahedron> All;        // empty: Differences suffice
+    std::vector<Tetrahedron> All;        // empty: the cells have not changed
     std::optional<DerivedNodes> Derived; // nothing: they have not changed
     std::string Ignored;
     std::string WrongOrder;
@@ -75,11 +74,6 @@ private:
 
   CellReading ReadCells(const MeshParts& shape, const MeshParts& rest,
     const DeformationSource& source, const MeshStamp& restCells, const MeshStamp& shapeCells);
-  /// The differences of the cells from the last ones; nothing if a comparison of memory does not
-  /// suffice. sameRest, sameShape: whether these cells are unchanged. shared: whether both meshes
-  /// have the same arrays of cells.
-  std::optional<Changes> CompareCells(const MeshParts& shape, const MeshParts& rest, bool sameRest,
-    bool sameShape, bool shared) const;
   /// Whether the nodes differ from the last ones in number or position.
   bool HavePointsChanged(const MeshParts& rest, const DeformationSource& source) const;
   /// Whether the cells are as many tetrahedra as before, with the same positions at rest.
@@ -91,8 +85,6 @@ private:
     std::atomic<bool>& kept);
   /// nodes: number of nodes of the grids.
   void UpdateDerivedPoints(std::size_t nodes);
-  void SetConnectivity(Changes&& changes);
-  void SetShape(CellReading&& cells);
 
   std::vector<Tetrahedron> Tetrahedra;
   std::vector<glm::dvec3> Points;
@@ -112,7 +104,6 @@ private:
   // Stamps of the inputs that the members above were read from.
   MeshStamp RestCells;
   MeshStamp ShapeCells;
-  std::vector<CellMemory> RestCellMemories; // of each part
   MeshStamp PointsStamp;
   ImageGeometry Volume;
   std::vector<VectorMemory> PointMemories; // of each part
