@@ -58,7 +58,8 @@ def make_field(field, inverse: bool = True) -> "_deformer.Field":
     """
     image, vectors = _read_field(field)
     affine = _arrays.join_affine(image.GetOrigin(), image.GetSpacing(), image.GetDirection())
-    return _deformer.Field(_arrays.from_image(vectors), affine, inverse)
+    # The vectors are in the memory of the image, which the Field does not keep.
+    return _deformer.Field(_arrays.from_image(vectors.copy()), affine, inverse)
 
 
 def deform(

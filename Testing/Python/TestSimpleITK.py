@@ -93,4 +93,10 @@ assert abs(ours - landmarks).max() > 0.5 and np.allclose(ours, theirs, rtol=0, a
 assert np.allclose(dv.deform_points(ours, converted).points, landmarks, rtol=0, atol=1e-6)
 assert not ds.make_field(field, inverse=False).inverse
 expect(ValueError, "three components", lambda: ds.make_field(image))
+# The Field has its own memory: that of the image or of the transform is freed.
+expected = sitk.GetArrayFromImage(field).transpose(2, 1, 0, 3)
+for make in (sitk.Image, lambda image: sitk.DisplacementFieldTransform(sitk.Image(image))):
+    converted = ds.make_field(make(field))
+    others = [np.full_like(expected, -7.0) for _ in range(3)]
+    assert np.array_equal(converted.vectors, expected)
 print("all tests passed")
