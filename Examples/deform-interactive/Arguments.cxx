@@ -34,6 +34,7 @@ std::optional<int> ParseArguments(int argc, char* argv[], Arguments& arguments)
     "be given several times")
     ->take_all()
     ->expected(1)
+    ->allow_extra_args(false)
     ->needs(replay);
   add("--frames", arguments.Frames, "FOLDER",
     "Write a picture of each frame of the replay: frame0000.png, ...")

@@ -184,7 +184,10 @@ TransformFile ParseTransform(const std::string& text)
   file.Path = text.substr(0, text.size() - (file.IsInverted ? inverted.size() : 0));
   if (file.Path.find(',') != std::string::npos)
   {
-    throw UsageError("--transform " + text + ": expected FILE or FILE,invert");
+    throw UsageError("--transform " + text + ": expected FILE or FILE,invert" +
+      (text[0] == '['
+          ? ". In place of [FILE,1] of ANTs write FILE,invert, and in place of [FILE,0] only FILE"
+          : ""));
   }
   return file;
 }

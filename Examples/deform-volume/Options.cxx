@@ -19,6 +19,7 @@
 #include <functional>
 #include <initializer_list>
 #include <iostream>
+#include <regex>
 
 namespace
 {
@@ -33,6 +34,21 @@ const CLI::Validator Finite(
   {
     return std::isfinite(std::strtod(text.c_str(), nullptr)) ? std::string()
                                                              : text + " is not a finite number";
+  },
+  "");
+
+/// Refuses the empty text of shell variables that are not set, which CLI11 reads as the number 0.
+const CLI::Validator NotEmpty([](std::string& text)
+  { return text.empty() ? std::string("the argument is empty") : std::string(); },
+  "");
+
+/// Refuses integers such as 010, which CLI11 reads as octal numbers.
+const CLI::Validator Decimal(
+  [](std::string& text)
+  {
+    static const std::regex octal("[+-]?0.+");
+    return std::regex_match(text, octal) ? text + " begins with 0. Give a decimal number"
+                                         : std::string();
   },
   "");
 
@@ -392,6 +408,7 @@ void AddResampling(CLI::App& program, Options& options)
     .Add("--padding", options.Padding, "VOXELS",
       "Width of a border on each side of the result, in voxels")
     ->capture_default_str()
+    ->check(Decimal)
     ->check(CLI::Range(0, 1000));
   group.Add("--background", options.Background, "NUMBER",
     "Value of voxels outside the deformed volume; arrays of --density-array are 0 there [0 with "
@@ -460,6 +477,7 @@ void AddOutput(CLI::App& program, Options& options)
     .Add("--frames", options.Frames, "NUMBER",
       "Number of frames of --movie: the number of steps in which handles move, and into which "
       "mass-spring divides --duration")
+    ->check(Decimal)
     ->check(CLI::Range(1, 9999));
   group.AddNumber("--threshold", options.Threshold,
     "Minimum value that the picture shows, approximately [the isovalue of --tetgen, or a fifth "
@@ -537,6 +555,7 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
       std::string(
         "Index of the volume to read from a file with several time steps, counted from 0 (NIfTI") +
         (HasITK ? ", MetaImage, NRRD)" : ")"))
+    ->check(Decimal)
     ->check(NotNegative);
   general.AddChoice("--volume-space", options.VolumeSpace, "SPACE", { "lps", "ras" },
     std::string("World coordinates of a volume whose file does not state them (.vti") +
@@ -560,6 +579,11 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
   AddResampling(program, options);
   AddOutput(program, options);
   AddDependencies(program);
+  for (CLI::Option* option : program.get_options())
+  {
+    // Without allow_extra_args(), an option that may be given several times would take VOLUME.
+    option->check(NotEmpty)->allow_extra_args(false);
+  }
   try
   {
     program.parse(argc, argv);

@@ -49,6 +49,14 @@ fails(2, "must end in .png", path("in.vti"), *lattice, *push, "--image", path("o
 fails(2, "--displacement", path("in.vti"), "--mesh", path("m.vtu"), "-o", path("o.vti"))
 fails(2, "--nonsense", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--nonsense")
 fails(2, "--outside", path("in.vti"), *lattice, *push, "-o", path("o.vti"), "--outside", "x")
+fails(2, "VOLUME: the argument is empty", "", *lattice, *push, "-o", path("o.vti"))
+for option in ("--output", "--reference", "--scale", "--background", "--frame", "--label-volume", "--transform",
+               "--field", "--mesh", "--cut", "--points-output", "--gravity", "--tetgen-executable"):
+    fails(2, f"{option}: the argument is empty", path("in.vti"), *lattice, *push, "-o", path("o.vti"), option, "")
+# Each option takes one argument.
+for option in ("-o", "--jacobian", "--cut", "--density-array"):
+    fails(2, "not expected: second.vti", path("in.vti"), *lattice, *push, "-o", path("o.vti"), option, "first.vti",
+          "second.vti")
 
 # Options that do not apply.
 mesh = ("--mesh", path("m.vtu"), "--displacement", "D")
@@ -85,6 +93,8 @@ fails(2, "--edge-length", path("in.vti"), *tetgen, "--edge-length", "-1", "-o", 
 fails(2, "--radius-edge-ratio", path("in.vti"), *tetgen, "--radius-edge-ratio", "-1", "-o",
       path("o.vti"))
 fails(2, "--padding", path("in.vti"), *lattice, *push, "--padding", "-1", "-o", path("o.vti"))
+for option in ("--padding", "--frame", "--frames"):
+    fails(2, f"{option}: 010 begins with 0", path("in.vti"), *lattice, *push, option, "010", "-o", path("o.vti"))
 
 # The help names the formats that the program reads and writes, and no others.
 help_text, _ = call(program, "--help", quiet=True)
@@ -172,7 +182,7 @@ output, _ = call(program, "--list-devices")
 assert output.strip(), "--list-devices lists no device"
 
 # A push moves voxels near its center by its displacement, and no voxel beyond its radius.
-output, errors = call(program, path("in.vti"), *lattice, *push, "-o", path("pushed.vti"),
+output, errors = call(program, *lattice, *push, "-o", path("pushed.vti"), path("in.vti"),
                       "--write-mesh", path("mesh.vtu"), "--background", "-7", "--bounds", "volume")
 # Cubes of 4.5 over 24 x 31.5 x 36: 7 x 8 x 9 nodes.
 for word in ("step", "Seconds for resampling", "total", "25 x 22 x 19", "504 nodes"):

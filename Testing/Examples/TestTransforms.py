@@ -72,7 +72,7 @@ for name, words in {
         "spline.h5,invert": "a BSplineTransform cannot be inverted",
         "warp.nii.gz,invert": "the file InverseWarp"}.items():
     fails(words, "--transform", path(name))
-fails("write FILE,invert", "--transform", f"[{path('warp.mha')},1]")  # as for ANTs
+fails("write FILE,invert", "--transform", f"[{path('warp.mha')},1]", code=2)  # as for ANTs
 affine = ("--transform", path("affine.h5"))
 fails("--volume-space", *affine, volume="unknown.vti")
 fails("expected FILE or FILE,invert", "--transform", path("affine.h5,inverse"), code=2)

@@ -274,10 +274,7 @@ std::unique_ptr<PointMap> ReadMap(
   const std::string fault = FindReadingFault(file.Path);
   if (!fault.empty())
   {
-    throw Failure(what + ": " + fault +
-      (file.Path == "0" || file.Path == "1"
-          ? ". In place of [FILE,1] of ANTs write FILE,invert, and in place of [FILE,0] only FILE"
-          : ""));
+    throw Failure(what + ": " + fault);
   }
   if (IsFieldFile(file.Path) && !IsVTKFile(file.Path))
   {
