@@ -2,6 +2,7 @@
 // deform-volume: deforms a volume from the command line.
 #include "Coverage.h"
 #include "Failure.h"
+#include "Files.h"
 #include "ImageAxes.h"
 #include "LabelVolume.h"
 #include "MapWriting.h"
@@ -61,6 +62,17 @@ void CheckOutputs(const Options& options)
     {
       throw Failure("cannot write " + path + ": there is no folder " + folder);
     }
+    if (vtksys::SystemTools::FileIsDirectory(path))
+    {
+      throw Failure("cannot write " + path + ": there is a folder of this name");
+    }
+    if (vtksys::SystemTools::FileIsFIFO(path) &&
+      HasSuffix(path, { ".nii", ".vti", ".vtu", ".vtp" }))
+    {
+      throw Failure("cannot write " + path +
+        ": the writer of this format does not write into pipes. Give another name, or write "
+        ".nii.gz, .mha or .nrrd");
+    }
     const std::string& existing = vtksys::SystemTools::FileExists(path) ? path : folder;
     if (access(existing.c_str(), W_OK) != 0)
     {
@@ -89,6 +101,53 @@ double FindBackground(const Options& options, vtkImageData* volume)
   return range[0] <= range[1] ? range[0] : 0.0;
 }
 
+// Checks the names of arrays before the long computations begin.
+void CheckArrays(const Options& options, vtkPointData* arrays)
+{
+  const auto find = [arrays](const char* option, const std::string& name)
+  {
+    if (arrays->GetArray(name.c_str()))
+    {
+      return;
+    }
+    std::string names;
+    for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+    {
+      if (arrays->GetArray(i) && arrays->GetArrayName(i))
+      {
+        names += std::string(names.empty() ? "" : ", ") + arrays->GetArrayName(i);
+      }
+    }
+    throw Failure(
+      option + (" " + name) + ": the volume has no such array of numbers. It has " + names);
+  };
+  const auto refuse = [arrays](const char* option, const char* name)
+  {
+    if (arrays->GetArray(name))
+    {
+      throw Failure(std::string(option) + ": the volume has a point array \"" + name +
+        "\", which is the name of an array that is computed. Rename or remove it");
+    }
+  };
+  for (const std::string& name : options.CategoricalArrays)
+  {
+    find("--categorical", name);
+  }
+  for (const std::string& name : options.DensityArrays)
+  {
+    find("--density-array", name);
+    refuse("--density-array", "Jacobian");
+  }
+  if (!options.Jacobians.empty())
+  {
+    refuse("--jacobian", "Jacobian");
+  }
+  if (!options.InverseFields.empty())
+  {
+    refuse("--inverse-field", "RestPosition");
+  }
+}
+
 void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* volume,
   const LabelVolume& labels, vtkImageData* reference, const Deformation& deformation)
 {
@@ -112,30 +171,16 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
     { "cubic", vtkDeformVolumeFilter::CUBIC_INTERPOLATION } };
   filter->SetInterpolation(interpolations.at(options.Interpolation));
   filter->SetDevice(options.Device);
-  vtkPointData* arrays = volume->GetPointData();
-  const auto check = [arrays](const char* option, const std::string& name)
-  {
-    if (!arrays->HasArray(name.c_str()))
-    {
-      std::string names;
-      for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
-      {
-        names += std::string(names.empty() ? "" : ", ") + arrays->GetArrayName(i);
-      }
-      throw Failure(option + (" " + name) + ": the volume has no such array. It has " + names);
-    }
-  };
   for (const std::string& name : options.CategoricalArrays)
   {
-    check("--categorical", name);
     filter->AddCategoricalArray(name.c_str());
   }
   for (const std::string& name : options.DensityArrays)
   {
-    check("--density-array", name);
     filter->AddDensityArray(name.c_str());
   }
   AskForMaps(options, filter);
+  vtkPointData* arrays = volume->GetPointData();
   for (int i = 0; options.Labels && i < arrays->GetNumberOfArrays(); ++i)
   {
     filter->AddCategoricalArray(arrays->GetArrayName(i));
@@ -296,6 +341,7 @@ void DeformVolume(const Options& options, Messages& messages)
   }
 
   const Stopwatch cutting;
+  CheckArrays(options, volume.Image->GetPointData());
   Volume cut = volume;
   const std::vector<std::string> tools = CutAndCarve(options, cut, messages);
   if (options.HasTools())

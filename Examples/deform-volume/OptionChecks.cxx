@@ -324,10 +324,15 @@ void CheckResampler(const Options& options, bool isForwardField)
         " needs a --mesh, --tetgen, --lattice or inverse field. It cannot be used with a forward "
         "field or with --model chainmail");
     }
-    if (options.Outside == "extrapolate" || options.SmoothCut)
+    const std::string other = options.Outside == "extrapolate" ? "--outside extrapolate"
+      : options.SmoothCut                                      ? "--smooth-cut"
+      : options.KeepDistance                                   ? "--keep"
+      : !options.Jacobians.empty()                             ? "--jacobian"
+      : !options.DensityArrays.empty()                         ? "--density-array"
+                                                               : "";
+    if (!other.empty())
     {
-      throw UsageError(what + " cannot be used with " +
-        (options.Outside == "extrapolate" ? "--outside extrapolate" : "--smooth-cut"));
+      throw UsageError(what + " cannot be used with " + other);
     }
   }
 }

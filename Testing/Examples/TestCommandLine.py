@@ -170,6 +170,10 @@ fails(1, "a volume is a", __file__, *lattice, *push, "-o", path("o.vti"))
 os.makedirs(path("empty"), exist_ok=True)
 fails(1, "DICOM" if "DICOM" in line else "a volume is a", path("empty"), *lattice, *push, "-o", path("o.vti"))
 fails(1, "no folder", path("in.vti"), *lattice, *push, "-o", path("none/o.vti"))
+os.makedirs(path("folder.nii"), exist_ok=True)
+fails(1, "there is a folder of this name", path("in.vti"), *lattice, *push, "-o", path("folder.nii"))
+os.mkfifo(path("pipe.vti"))
+fails(1, "does not write into pipes", path("in.vti"), *lattice, *push, "-o", path("pipe.vti"))
 no_display = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
 fails(1, "xvfb-run", path("in.vti"), *lattice, *push, "--image", path("o.png"),
       environment=no_display)

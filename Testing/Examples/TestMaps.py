@@ -21,7 +21,7 @@ def fails(words, *options, code=1):
 same = ["--push", "0,0,0,1,0,0,5"]
 fails("the name must end in", *same, "--jacobian", path("jacobian.png"), code=2)
 fails("the name must end in", *same, "--inverse-field", path("field.h5"), code=2)
-fails("--density-array dose: the volume has no such array. It has ", *same, "--density-array", "dose",
+fails("--density-array dose: the volume has no such array of numbers. It has ", *same, "--density-array", "dose",
       "-o", path("a.vti"))
 
 background = -123.0

@@ -18,6 +18,7 @@ from MeshFiles import (
     write,
 )
 from Volumes import begin_test, call, make_ball, read_vti, write_vti
+from vtkmodules.vtkCommonCore import vtkStringArray
 from vtkmodules.vtkCommonDataModel import (
     VTK_BEZIER_TETRAHEDRON,
     VTK_CONVEX_POINT_SET,
@@ -98,6 +99,9 @@ def check_resamplers():
     for arguments in (mesh, (*lattice, *push)):
         fails(2, "--outside extrapolate", *arguments, *rasterization, "--outside", "extrapolate")
         fails(2, "--smooth-cut", *arguments, *rasterization, *cut, "--smooth-cut")
+        for option, value in (("--keep", "3"), ("--jacobian", path("j.vti")), ("--density-array", "Values")):
+            fails(2, f"--resampler mesh-rasterization cannot be used with {option}", *arguments, *rasterization,
+                  option, value)
     inverse = (*field, "--field-is-inverse")
     fails(2, "inverse", *inverse, *exact)
     fails(2, "inverse", *inverse, *cut, "--smooth-cut")
@@ -125,6 +129,19 @@ def check_volumes():
     call(program, path("inactive.vti"), "--tetgen", "--edge-length", "9", *push, "-o",
          path("inactive-out.vti"))
     fails(1, ["no such array", "Values"], *mesh, "--categorical", "Labels")
+    # Names of arrays are checked before the mesh is read.
+    words = vtkStringArray()
+    words.SetName("Words")
+    words.SetNumberOfValues(image.GetNumberOfPoints())
+    image.GetPointData().AddArray(words)
+    image.GetPointData().AddArray(to_vtk("Jacobian", numpy.zeros(image.GetNumberOfPoints())))
+    write_vti(image, path("words.vti"))
+    missing = ("--mesh", path("none.vtu"), "--displacement", "U")
+    for option, name, expected in (("--density-array", "Words", "It has Values, Jacobian"),
+                                   ("--categorical", "Words", "no such array of numbers"),
+                                   ("--density-array", "Values", 'has a point array "Jacobian"'),
+                                   ("--jacobian", path("j.vti"), 'has a point array "Jacobian"')):
+        fails(1, [option, expected], *missing, option, name, source="words.vti")
     # Masks are not the values, also if they are the first array or the scalars.
     for mask, kind in (("vtkGhostType", numpy.uint8), ("vtkValidPointMask", numpy.int8),
                        ("BoundaryDistance", numpy.float32)):
