@@ -294,6 +294,24 @@ void CheckCoverage(vtkImageData* result)
   }
 }
 
+// Returns the result with 0 outside the deformed volume in all arrays but the scalars: the default
+// background is a value of the scalars, and other arrays hold other quantities.
+vtkSmartPointer<vtkImageData> ClearOutside(vtkImageData* result)
+{
+  auto cleared = vtkSmartPointer<vtkImageData>::New();
+  cleared->ShallowCopy(result);
+  vtkPointData* arrays = cleared->GetPointData();
+  for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = arrays->GetArray(i);
+    if (array && array->GetName() && array != arrays->GetScalars())
+    {
+      arrays->AddArray(CopyCovered(result, array->GetName()));
+    }
+  }
+  return cleared;
+}
+
 // A few tetrahedra that are inside out are normal, for example at the handles of ChainMail.
 void WarnOfFolds(
   const Options& options, vtkIdType voxels, vtkDeformVolumeFilter* filter, Messages& messages)
@@ -323,6 +341,7 @@ void DeformVolume(const Options& options, Messages& messages)
   const ReadingOptions readingOptions{ options.FileCoordinates, options.Frame };
   Volume volume = ReadVolume(options.Volume, readingOptions, messages, !options.Quiet);
   ChooseScalars(volume.Image, options.Volume);
+  CheckArrays(options, volume.Image->GetPointData());
   CheckBackground(options, volume.Image->GetPointData()->GetScalars(), messages);
   volume.Axes =
     ResolveSpace("--volume-space", options.VolumeSpace, options.Volume, volume.Axes, messages);
@@ -341,7 +360,6 @@ void DeformVolume(const Options& options, Messages& messages)
   }
 
   const Stopwatch cutting;
-  CheckArrays(options, volume.Image->GetPointData());
   Volume cut = volume;
   const std::vector<std::string> tools = CutAndCarve(options, cut, messages);
   if (options.HasTools())
@@ -428,6 +446,10 @@ void DeformVolume(const Options& options, Messages& messages)
     }
   }
   WriteMaps(options, result, messages);
+  if (!options.Background)
+  {
+    result.Image = ClearOutside(result.Image);
+  }
   for (const std::string& output : options.Outputs)
   {
     WriteVolume(result, output, messages, !options.Quiet);

@@ -411,9 +411,9 @@ void AddResampling(CLI::App& program, Options& options)
     ->check(Decimal)
     ->check(CLI::Range(0, 1000));
   group.Add("--background", options.Background, "NUMBER",
-    "Value of voxels outside the deformed volume; arrays of --density-array are 0 there [0 with "
-    "--labels or if the type of the volume has no negative values, otherwise the minimum of the "
-    "volume, such as air in CT]");
+    "Value of voxels outside the deformed volume, in all arrays but those of --density-array, "
+    "which are 0 there [of the scalars 0 if they are labels or if their type has no negative "
+    "values, otherwise their minimum, such as air in CT; of other arrays 0]");
   group.AddList("--categorical", options.CategoricalArrays, "NAME",
     "Name of an array of labels, which is not interpolated. May be given several times");
   group.AddFlag("--labels", options.Labels, "All arrays hold labels");

@@ -294,19 +294,26 @@ output, _ = call(program, path("parts.vti"), *tetgen, "--categorical", "Values",
 assert "body       1 voxels" in output, output
 os.remove(path("o.vti"))
 
-# The background is the least value if values can be negative. Labels have the background 0.
+# The background is the least value of the scalars if values can be negative. Labels and other arrays have the
+# background 0.
 hounsfield = make_ball()
 vtk_to_numpy(hounsfield.GetPointData().GetScalars())[:] -= 1000
+hounsfield.GetPointData().AddArray(to_vtk("Dose", numpy.ones(hounsfield.GetNumberOfPoints())))
+hounsfield.GetPointData().AddArray(to_vtk("Part", numpy.ones(hounsfield.GetNumberOfPoints(), numpy.int16)))
 write_vti(hounsfield, path("ct.vti"))
 least = get_values(hounsfield).min()
 assert least < -900, least
 for options, background in (((), least), (("--background", "24"), 24), (("--labels",), 0),
-                            (("--categorical", "Values"), 0), (("--interpolation", "nearest"), least)):
+                            (("--categorical", "Values"), 0), (("--categorical", "Part"), least),
+                            (("--interpolation", "nearest"), least)):
     output, _ = call(program, path("ct.vti"), *lattice, *push, "-o", path("air.vti"), "--padding", "2",
                      *options)
     air = read_vti(path("air.vti"))
     outside = get_values(air, "vtkValidPointMask") == 0
     assert outside.any() and (get_values(air, "Values")[outside] == background).all(), options
+    for name in ("Dose", "Part"):
+        numpy.testing.assert_array_equal(get_values(air, name)[outside], 24 if "--background" in options else 0)
+        assert get_values(air, name)[~outside].min() > 0.99
     assert f"background {background}\n" in output, output
     if "nearest" in options:
         values = get_values(air, "Values")
