@@ -140,6 +140,18 @@ for volume in ("moving.nii.gz", "moving.mha"):
     check(volume, "affine,invert+warp", "affine.mat,invert", "warp.nii.gz")
     check(volume, "warp+affine", "warp.nii.gz", "affine.mat")
 
+# The border of --padding is filled by the transform, as with a reference image of that grid.
+padded = ("-q", "-o", path("padded.vti"), "-o", path("padded.mha"))
+call(program, path("moving.mha"), *affine, "--padding", "4", "--background", "9", *padded)
+border = read_vti(path("padded.vti"))
+call(program, path("moving.mha"), *affine, "--reference", path("padded.mha"), "--background", "9", "-q", "-o",
+     path("referred.vti"))
+covered = get_values(border, "vtkValidPointMask") != 0
+assert covered.sum() > covered[4:-4, 4:-4, 4:-4].sum()
+referred = read_vti(path("referred.vti"))
+assert (get_values(referred, "vtkValidPointMask") != covered).mean() < 1e-4
+numpy.testing.assert_allclose(get_values(border)[covered], get_values(referred)[covered], rtol=0, atol=1e-4)
+
 # Results on the grid of the fixed image, in both worlds, and on a mirrored grid.
 for grid, suffix in itertools.product(("fixed", "mirrored"), (".nii.gz", ".mha")):
     volume = {".nii.gz": "moving.mha", ".mha": "moving.nii.gz"}[suffix]

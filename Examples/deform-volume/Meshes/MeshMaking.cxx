@@ -194,7 +194,16 @@ Deformation MakeDeformation(const Options& options, const Volume& volume,
 #ifdef DEFORMVOLUME_HAVE_ITK
   else if (!options.Transforms.empty())
   {
-    deformation.Data = ReadTransforms(options.Transforms, volume, grid, messages, !options.Quiet);
+    vtkNew<vtkImageData> padded; // the grid of the result
+    padded->CopyStructure(grid);
+    int extent[6];
+    grid->GetExtent(extent);
+    for (int side = 0; side < 6; ++side)
+    {
+      extent[side] += side % 2 == 0 ? -options.Padding : options.Padding;
+    }
+    padded->SetExtent(extent);
+    deformation.Data = ReadTransforms(options.Transforms, volume, padded, messages, !options.Quiet);
     deformation.Displacement = FieldArrayName;
   }
 #endif

@@ -33,9 +33,9 @@ struct Deformation
   std::vector<std::string> Edges;
 };
 
-/// Reads or computes the deformation of the options. grid: the grid of the result, on which
-/// --transform is sampled. Calls takeFrame with each frame of a model, including the last one.
-/// Throws a Failure if that is not possible.
+/// Reads or computes the deformation of the options. grid: the grid of the result without
+/// --padding; --transform is sampled on the grid with padding. Calls takeFrame with each frame of a
+/// model, including the last one. Throws a Failure if that is not possible.
 Deformation MakeDeformation(const Options& options, const Volume& volume, vtkImageData* grid,
   Messages& messages, const FrameTaker& takeFrame);
 
