@@ -155,8 +155,10 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfSplits(vtkImageData* volume)
   this->State->WarnedOfSplitsOf = warns ? shape : 0;
   if (warns)
   {
-    vtkWarningWithObjectMacro(
-      this->Self, << text << " Cut the volume along the split, or let the filter open splits.");
+    vtkWarningWithObjectMacro(this->Self,
+      << text
+      << " Cut the volume along the split, or let the filter open splits (deform-volume: "
+         "--open-splits).");
   }
 }
 

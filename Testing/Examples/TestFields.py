@@ -189,6 +189,15 @@ for field_name, options, words in (
     assert words in errors and (words or "warning:" not in errors), errors
 
 
+# A field for --transform is inverse.
+write_nrrd(path("kind.nrrd"), single @ flip.astype(numpy.float32), in_lps,
+           extra="displacement field type:=modeling\n")
+transform = (path("volume.nii.gz"), "-o", path("no.vti"), "--transform")
+Messages.warns(program, "Give it with --field, without --field-is-inverse", *transform, path("kind.nrrd"))
+os.remove(path("no.vti"))
+Messages.fails(program, 1, "Or give it with --field and --field-space", *transform, path("any.nrrd"))
+
+
 # A file that cannot be read is an error that states the reason.
 def fails(expected, field_name, *options, code=1):
     Messages.fails(program, code, expected, path("volume.nii.gz"), "--field", path(field_name), "-o", path("no.vti"),

@@ -187,7 +187,7 @@ def check_materials_and_cut():
     arguments = ("--mesh", path("cut.vtu"), "--displacement", "Displacement", "-o", path("again.vti"))
     call(program, path("in.vti"), *arguments, "--open-splits")
     numpy.testing.assert_array_equal(get_values(read_vti(path("again.vti"))), expected)
-    Messages.warns(program, "let the filter open splits", path("in.vti"), *arguments)
+    Messages.warns(program, "--open-splits", path("in.vti"), *arguments)
     again = get_values(read_vti(path("again.vti")))
     assert again.shape != expected.shape or (again != expected).any()
 

@@ -114,7 +114,8 @@ void CheckKind(const Volume& field, const std::string& path, bool isInverse, Mes
   if ((kind == "resampling" && !isInverse) || (kind == "modeling" && isInverse))
   {
     messages.Warn("The displacement field type of " + path + " is \"" + kind +
-      (isInverse ? "\": it is a forward field. Remove --field-is-inverse."
+      (isInverse ? "\": it is a forward field. Give it with --field, without "
+                   "--field-is-inverse."
                  : "\": it leads from the deformed volume to the volume at rest, and needs "
                    "--field-is-inverse."));
   }
@@ -290,7 +291,7 @@ vtkSmartPointer<vtkImageData> ReadField(const std::string& path, const Volume& v
     throw Failure(what +
       ": its header does not state its world coordinates. A NIfTI file needs a q-form or s-form, "
       "an NRRD file a space such as left-posterior-superior or right-anterior-superior. Or give "
-      "--field-space");
+      "it with --field and --field-space");
   }
   if (isFlipped)
   {
