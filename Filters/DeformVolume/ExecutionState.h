@@ -85,11 +85,10 @@ struct ExecutionState
   RegionsKey KeyOfRegions;
   std::unique_ptr<RestRegions> Regions;
 
-  // The extent of the volume that was needed last. A Share identifies the part of the output and
-  // the volume that the extent belongs to: the extent of the output (empty: all), the piece, the
-  // number of pieces, and the volume.
-  using Share = std::tuple<Extent, int, int, ImageGeometry>;
-  Share LastShare;
+  // The extent of the volume that was needed last, and what it was needed for: the extent of the
+  // output (empty: all), the piece, the number of pieces, and the geometry of the volume.
+  using OutputPart = std::tuple<Extent, int, int, ImageGeometry>;
+  OutputPart LastPart;
   Extent LastNeeded{ { 0, -1, 0, -1, 0, -1 } };
 
   deformvolume::SplitNodes Splits;

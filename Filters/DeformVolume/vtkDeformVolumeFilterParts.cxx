@@ -170,15 +170,15 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
   {
     asked = { { 0, -1, 0, -1, 0, -1 } };
   }
-  const deformvolume::ExecutionState::Share share{ asked,
+  const deformvolume::ExecutionState::OutputPart part{ asked,
     output->Get(Pipeline::UPDATE_PIECE_NUMBER()), output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()),
     volume };
   Extent kept = needed;
-  if (share == this->State->LastShare)
+  if (part == this->State->LastPart)
   {
     deformvolume::Include(kept, this->State->LastNeeded);
   }
-  this->State->LastShare = share;
+  this->State->LastPart = part;
   this->State->LastNeeded = kept;
   return kept;
 }

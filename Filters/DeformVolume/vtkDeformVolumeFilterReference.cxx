@@ -72,7 +72,7 @@ void vtkDeformVolumeFilter::vtkInternals::ReadReference(
     // Another grid needs other voxels, and no longer the previous ones.
     for (auto& state : this->States)
     {
-      state.second.LastShare = {};
+      state.second.LastPart = {};
     }
   }
 }

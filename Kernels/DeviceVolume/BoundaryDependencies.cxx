@@ -43,9 +43,9 @@ BoundaryDependencies FindBoundaryDependencies(
       };
       const auto rest = getEnds(piece.Rest, static_cast<glm::length_t>(axis));
       const int begin = vertices[2 * axis];
-      // The margin of one cell covers the rounding of nodes. It also includes the crossed neighbor
-      // of a cell that the piece moves, so that IncrementalUpdate::IsInside() is false if a piece
-      // changes.
+      // The box is one cell larger than the piece on each side: nodes are rounded, and a cell
+      // beside those that the piece moves may be crossed by the boundary, too. If the piece
+      // changes, IncrementalUpdate::IsInside() must be false for all of these cells.
       near[2 * axis] = getIndex(static_cast<int>(axis), std::floor(rest.first - begin) - 1.0);
       near[2 * axis + 1] = getIndex(static_cast<int>(axis), std::floor(rest.second - begin) + 1.0);
       const auto indices = getEnds(piece.Weights, axis);

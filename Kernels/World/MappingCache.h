@@ -84,7 +84,7 @@ private:
   // The data that a mapping depends on.
   struct Key
   {
-    const void* Owner = nullptr;
+    const void* Owner = nullptr; // identifies the mesh; only compared
     std::uint64_t ShapeVersion = 0;
     MappedVolume Volume;
     bool operator==(const Key& other) const
