@@ -241,7 +241,7 @@ void vtkDeformVolumeInteractorStyle::OnChar()
     this->ReleaseAt(x, y);
     return;
   }
-  internals.EndPress();
+  internals.CancelPress(); // a model that is in use or fails does not end the drag
   if (model >= 0)
   {
     internals.Session->ChangeModel(model);

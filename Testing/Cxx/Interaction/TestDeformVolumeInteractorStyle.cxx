@@ -785,6 +785,10 @@ TEST(DeformVolumeInteractorStyle, InterruptedDrag)
   EXPECT_TRUE(isGrabbed());
   viewer.Replay(drag); // without a release
   EXPECT_TRUE(isGrabbed());
+  viewer.Replay(Viewer::Key('2')); // the model in use, so that the session keeps the handle
+  EXPECT_FALSE(isGrabbed());
+  viewer.Replay(drag);
+  EXPECT_TRUE(isGrabbed());
   viewer.Object->SetSession(other);
   EXPECT_FALSE(isGrabbed());
   viewer.Object->SetSession(viewer.SessionObject);
