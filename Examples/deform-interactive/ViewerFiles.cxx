@@ -220,6 +220,10 @@ void Viewer::Replay(const std::string& path)
   {
     throw Failure("cannot replay " + path + ": there is no such file");
   }
+  if (this->Recorder) // it may append to this file, so that the replay would not end
+  {
+    this->ToggleRecording();
+  }
   std::string line;
   std::getline(std::ifstream(path), line);
   if (line.rfind("# StreamVersion", 0) != 0)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests that deform-interactive replays a recording that is dropped onto its window, as file managers drop files. The
-client that drops the file disconnects before the replay. Usage: TestDrop.py PROGRAM FOLDER"""
+"""Tests that deform-interactive replays a recording that is dropped onto its window, as file managers drop files, and
+ends a recording that is dropped while it is written. The client that drops the file disconnects before the replay.
+Usage: TestDrop.py PROGRAM FOLDER"""
 import os
 import subprocess
 import sys
@@ -66,6 +67,13 @@ class Source:
             return None
         return wait_for(find)
 
+    def press(self, key):
+        self.target.send_event(event.KeyPress(
+            time=X.CurrentTime, root=self.display.screen().root, window=self.target, same_screen=1, child=X.NONE,
+            root_x=20, root_y=20, event_x=20, event_y=20, state=0,
+            detail=self.display.keysym_to_keycode(ord(key))), event_mask=0)
+        self.display.flush()
+
     def drop(self, name):
         self.tell("XdndEnter", 5 << 24, self.atom("text/uri-list"))
         self.tell("XdndPosition", 0, 20 << 16 | 20, X.CurrentTime, self.atom("XdndActionCopy"))
@@ -85,10 +93,19 @@ class Source:
 
 write_vti(make_ball(dimensions=(31, 28, 25), spacing=(1.0, 1.0, 1.0)), path("ball.vti"))
 WindowEvents().keys("s").wait(2).write(path("events.log"))
-with subprocess.Popen([program, path("ball.vti"), "--size", "200,200"], stdout=subprocess.PIPE,
-                      stderr=subprocess.STDOUT, cwd=path()) as running:
-    try:
-        Source().drop(path("events.log"))
-        wait_for(lambda: os.path.exists(path("ball-deformed-1.xml")))
-    finally:
-        running.kill()
+for name, options, saved in (("events.log", [], "ball-deformed-1.xml"),
+                             ("written.log", ["--record", path("written.log")], "ball-deformed-3.xml")):
+    with subprocess.Popen([program, path("ball.vti"), "--size", "200,200"] + options, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, cwd=path()) as running:
+        try:
+            source = Source()
+            if options:
+                source.press("s")
+                wait_for(lambda: os.path.exists(path("ball-deformed-2.xml")))
+            source.drop(path(name))
+            wait_for(lambda: os.path.exists(path(saved)))
+            size = os.path.getsize(path(name))
+            time.sleep(1.0)
+            assert os.path.getsize(path(name)) == size, "the recording goes on: its replay would never end"
+        finally:
+            running.kill()
