@@ -19,7 +19,7 @@
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
 
-#include <glm/geometric.hpp>
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -58,6 +58,16 @@ void TakeWarning(vtkObject*, unsigned long, void* target, void* text)
 glm::dvec3 GetPosition(const SessionEvent& event, std::size_t first)
 {
   return { event.Numbers[first], event.Numbers[first + 1], event.Numbers[first + 2] };
+}
+
+// Filters refuse positions that are farther away. False for not-a-number, too.
+bool IsWithinReach(vtkImageData* volume, const glm::dvec3& position)
+{
+  constexpr double farthest = 2147483648.0; // voxels
+  glm::dvec3 index;
+  volume->TransformPhysicalPointToContinuousIndex(&position.x, &index.x);
+  index = glm::abs(index);
+  return index.x <= farthest && index.y <= farthest && index.z <= farthest;
 }
 
 int GetWhole(const SessionEvent& event, int least, int most, const char* name)
@@ -284,9 +294,10 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   }
   Action drag;
   drag.Handle = handle;
-  drag.Rest = FindRestPosition(this->GetDeformation(), position);
   drag.IsGrabbed = drag.IsHeld = true;
-  if (!MoveIntoVolume(this->Volume, drag.Rest))
+  const bool isWithinReach = IsWithinReach(this->Volume, position);
+  drag.Rest = isWithinReach ? FindRestPosition(this->GetDeformation(), position) : position;
+  if (!isWithinReach || !MoveIntoVolume(this->Volume, drag.Rest))
   {
     throw std::runtime_error("The grabbed position " + Format(&position.x) +
       " is outside the deformed volume. Grab a position within it.");
@@ -354,6 +365,17 @@ void SessionPipeline::Release(double handle)
 void SessionPipeline::Cut(const SessionEvent& event)
 {
   const auto sheet = MakeSheet(event);
+  for (vtkIdType id = 0; id < sheet->GetNumberOfPoints(); ++id)
+  {
+    glm::dvec3 point;
+    sheet->GetPoint(id, &point.x);
+    if (!IsWithinReach(this->Volume, point)) // before the subdivision, which would not end
+    {
+      throw std::runtime_error("Point " + std::to_string(id) +
+        " of the sheet is more than 2^31 voxels away from index 0 of the volume. Correct the "
+        "point.");
+    }
+  }
   Action cut;
   cut.Kind = Action::CUT;
   cut.RestSheet = this->Model == Session::NONE ? sheet : MoveToRest(sheet, this->GetDeformation());

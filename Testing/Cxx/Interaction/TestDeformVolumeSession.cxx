@@ -424,6 +424,15 @@ TEST(DeformVolumeSession, Recovery)
   session->Reset();
   VerifyRest(one.Finish(), volume);
   EXPECT_EQ(one.TakeError(), "");
+
+  // The deformation has no inverse so far away.
+  Tested far(volume);
+  far.Object->ChangeModel(Session::FINITE_ELEMENTS);
+  const int pulled = far.Object->BeginGrab(10, 10, 17);
+  far.Object->MoveGrab(pulled, 13, 11, 18);
+  far.Step();
+  far.Object->BeginGrab(1e300, 1e300, 1e300);
+  far.ExpectError("is outside the deformed volume");
 }
 
 // A position outside a rotated volume, but within its bounds, cannot be grabbed, and the other
@@ -1237,6 +1246,25 @@ TEST(DeformVolumeSession, LargeSheets)
       EXPECT_EQ(one.TakeError(), "");
     }
     EXPECT_TRUE(AreEqual(outputs[0], outputs[1]));
+  }
+  // The subdivision of such a sheet would not end.
+  for (const int model : { Session::NONE, Session::CHAIN_MAIL, Session::MASS_SPRING })
+  {
+    Tested one(MakeVolume(Box));
+    one.Object->ChangeModel(model);
+    for (const double size : { 1e10, 1e160, 1e300 })
+    {
+      const auto sheet = MakePlane({ 11, 12, 9.7 }, { 60, 0, 0 }, { 0, 60, 0 });
+      vtkNew<vtkPoints> points;
+      points->SetDataTypeToDouble();
+      for (vtkIdType id = 0; id < sheet->GetNumberOfPoints(); ++id)
+      {
+        points->InsertNextPoint(size * sheet->GetPoint(id)[0], size * sheet->GetPoint(id)[1], 9.7);
+      }
+      sheet->SetPoints(points);
+      one.Object->Cut(sheet);
+      one.ExpectError("more than 2^31 voxels away");
+    }
   }
 }
 
