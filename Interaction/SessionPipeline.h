@@ -155,6 +155,7 @@ private:
   void Rebuild();
   Actions GetHeld() const;
   void UpdateModel(const Actions& held);
+  void CheckDisplacements();
   /// Warns once if a handle lies outside the output.
   void CheckHandles();
   // Returns the nodes that a handle at a rest position holds, of those that can move: those within

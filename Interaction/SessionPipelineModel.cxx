@@ -19,6 +19,7 @@
 #include "vtkImageData.h"
 #include "vtkLatticeTetrahedraSource.h"
 #include "vtkMassSpringDeformation.h"
+#include "vtkMatrix4x4.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -375,6 +376,28 @@ void SessionPipeline::UpdateModel(const Actions& held)
     elastic->SetHandlesData(handles);
     elastic->Modified();
     this->Update(elastic);
+    this->CheckDisplacements();
+  }
+}
+
+// Throws if the resampler would refuse the displacements of the mesh. The simulation does not
+// recover from such displacements either, so that the body must be rebuilt.
+void SessionPipeline::CheckDisplacements()
+{
+  constexpr double largest = 16383.0; // voxels
+  vtkDataArray* vectors = this->GetDeformation()->GetPointData()->GetVectors();
+  for (vtkIdType id = 0; id < vectors->GetNumberOfTuples(); ++id)
+  {
+    double vector[4] = { 0.0, 0.0, 0.0, 0.0 };
+    vectors->GetTuple(id, vector);
+    this->Volume->GetPhysicalToIndexMatrix()->MultiplyPoint(vector, vector);
+    // False for not-a-number, too.
+    if (!std::all_of(vector, vector + 3, [](double part) { return std::abs(part) <= largest; }))
+    {
+      this->IsToRebuild = true;
+      throw std::runtime_error("The deformation moves node " + std::to_string(id) +
+        " of the mesh by more than 16,383 voxels. Move the handles less far.");
+    }
   }
 }
 
@@ -387,8 +410,11 @@ void SessionPipeline::StepBack()
   }
   try
   {
-    this->UpdateModel(this->GetHeld());
-    return;
+    if (!this->IsToRebuild)
+    {
+      this->UpdateModel(this->GetHeld());
+      return;
+    }
   }
   catch (const std::runtime_error&)
   {

@@ -52,13 +52,14 @@
  * @par Errors:
  * Each error is one vtkErrorMacro, which says what is wrong and what to do, and GetErrorMessage().
  * Observers of errors may call the session. An event that fails changes nothing, but ends a stroke
- * of CarveSphere(); if the model or the lattice cannot be changed, or if a simulation diverges, the
- * body is rebuilt from rest. If a mesh cannot be cut, handles return to their last possible
- * positions. MoveGrab(), EndGrab() and HoldGrab() of a handle that could not be grabbed have no
- * effect. Errors of events are reported by Update() and TakeOutput(). Errors are: no inputs;
- * positions that are not finite, or outside the volume; a handle that is not grabbed, or that
- * cannot be moved so far; a sheet that is empty or not made of triangles; errors of the filters;
- * files that cannot be written or read, are damaged, or belong to another version or volume.
+ * of CarveSphere(); if the model or the lattice cannot be changed, or if a simulation diverges or
+ * moves a node by more than 16,383 voxels, the body is rebuilt from rest. If a step fails or a mesh
+ * cannot be cut, handles return to their last possible positions. MoveGrab(), EndGrab() and
+ * HoldGrab() of a handle that could not be grabbed have no effect. Errors of events are reported by
+ * Update() and TakeOutput(). Errors are: no inputs; positions that are not finite, or outside the
+ * volume; a handle that is not grabbed, or that cannot be moved so far; a sheet that is empty, not
+ * made of triangles, or more than 2^31 voxels away; errors of the filters; files that cannot be
+ * written or read, are damaged, or belong to another version or volume.
  *
  * @sa vtkDeformVolumeFilter vtkChainMailDeformation vtkCutVolume vtkCarveVolume
  */

@@ -113,11 +113,14 @@ void vtkDeformVolumeSession::vtkInternals::ProcessAndRecord(
     if (event.Kind == SessionEvent::STEP)
     {
       ++this->Steps;
-      this->IsMoving = false;
+      // After a failure the next step finds out whether the body still moves, unless it fails, too.
+      this->IsMoving = !std::exchange(this->HasFailed, true);
       this->IsMoving = this->Pipeline.Step();
+      this->HasFailed = false;
     }
     else
     {
+      this->HasFailed = false;
       this->Pipeline.Apply(event);
     }
   }
@@ -133,7 +136,7 @@ void vtkDeformVolumeSession::vtkInternals::Begin(vtkImageData* volume, vtkUnstru
   this->Pipeline.SetInputs(volume, mesh);
   this->Record = this->Pipeline.GetSettings();
   this->Steps = 0;
-  this->IsMoving = false;
+  this->IsMoving = this->HasFailed = false;
 }
 
 std::string vtkDeformVolumeSession::vtkInternals::Restore(const SessionEvents& events)

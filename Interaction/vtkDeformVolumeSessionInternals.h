@@ -40,7 +40,8 @@ public:
   deformvolume::SessionPipeline Pipeline;
   deformvolume::SessionEvents Record;
   bool IsMoving = false;
-  std::string InputHash; // "": not computed yet
+  bool HasFailed = false; // whether the last step has failed, with no event since then
+  std::string InputHash;  // "": not computed yet
   vtkIdType Steps = 0;
 
   // Protects the following members. Locked for short times only, and after PipelineMutex if both

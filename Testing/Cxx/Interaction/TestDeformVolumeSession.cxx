@@ -433,6 +433,23 @@ TEST(DeformVolumeSession, Recovery)
   far.Step();
   far.Object->BeginGrab(1e300, 1e300, 1e300);
   far.ExpectError("is outside the deformed volume");
+
+  // The model can move so far, but the resampler cannot.
+  far.Object->MoveGrab(pulled, 2e4, 10, 17);
+  far.ExpectError("more than 16,383 voxels");
+  EXPECT_TRUE(HasHandles(far.Object, { { pulled, { 13, 11, 18 }, { 10, 10, 17 }, true } }));
+  EXPECT_NE(far.Finish(), nullptr);
+
+  // Tissue that moves goes on after a handle has failed.
+  Tested moving(volume);
+  moving.Object->ChangeModel(Session::CHAIN_MAIL);
+  const int dragged = moving.Object->BeginGrab(10, 10, 10);
+  moving.Object->MoveGrab(dragged, 18, 10, 10);
+  EXPECT_TRUE(moving.Object->Update());
+  moving.Object->MoveGrab(dragged, 1e5, 10, 10);
+  EXPECT_TRUE(moving.Object->Update());
+  EXPECT_NE(moving.TakeError(), "");
+  EXPECT_NE(moving.Finish(), nullptr);
 }
 
 // A position outside a rotated volume, but within its bounds, cannot be grabbed, and the other
