@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SessionPipeline.h"
 
-#include "SessionPositions.h"
 #include "StyleText.h"
 #include "VoxelSize.h"
 #include "vtkDeformVolumeSession.h"
@@ -269,6 +268,11 @@ void SessionPipeline::Apply(const SessionEvent& event)
   }
 }
 
+glm::dvec3 SessionPipeline::FindRestPosition(const glm::dvec3& deformed)
+{
+  return this->Positions.FindRestPosition(this->GetDeformation(), deformed);
+}
+
 void SessionPipeline::BeginGrab(double handle, const glm::dvec3& position)
 {
   try
@@ -296,7 +300,7 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   drag.Handle = handle;
   drag.IsGrabbed = drag.IsHeld = true;
   const bool isWithinReach = IsWithinReach(this->Volume, position);
-  drag.Rest = isWithinReach ? FindRestPosition(this->GetDeformation(), position) : position;
+  drag.Rest = isWithinReach ? this->FindRestPosition(position) : position;
   if (!isWithinReach || !MoveIntoVolume(this->Volume, drag.Rest))
   {
     throw std::runtime_error("The grabbed position " + Format(&position.x) +
@@ -308,7 +312,8 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
     this->CheckNodes(drag);
   }
   // The handle begins at the deformed position of Rest, so that nothing moves before MoveGrab().
-  drag.Now = drag.LastPossible = FindDeformedPosition(this->GetDeformation(), drag.Rest);
+  drag.Now = drag.LastPossible =
+    this->Positions.FindDeformedPosition(this->GetDeformation(), drag.Rest);
   this->AddActionWithState(drag);
 }
 
@@ -378,7 +383,9 @@ void SessionPipeline::Cut(const SessionEvent& event)
   }
   Action cut;
   cut.Kind = Action::CUT;
-  cut.RestSheet = this->Model == Session::NONE ? sheet : MoveToRest(sheet, this->GetDeformation());
+  cut.RestSheet = this->Model == Session::NONE
+    ? sheet
+    : this->Positions.MoveToRest(sheet, this->GetDeformation());
   vtkElasticDeformation* elastic = this->GetElastic();
   if (this->Model == Session::CHAIN_MAIL)
   {

@@ -3,6 +3,7 @@
 #define DeformVolumeSessionPipeline_h
 
 #include "SessionEvents.h"
+#include "SessionPositions.h"
 
 #include "vtkNew.h"
 #include "vtkSmartPointer.h"
@@ -67,6 +68,8 @@ public:
 
   vtkImageData* GetVolume() { return this->Volume; }
   vtkDataSet* GetDeformation();
+  /// Returns the position at rest of a position of the deformed body.
+  glm::dvec3 FindRestPosition(const glm::dvec3& deformed);
   int GetModel() const { return this->Model; }
   /// Number of voxels that ChainMail has moved in the last step; 0 with other models.
   vtkIdType GetNumberOfMovedVoxels();
@@ -181,6 +184,7 @@ private:
   vtkNew<vtkMassSpringDeformation> MassSpring;
   vtkNew<vtkFiniteElementDeformation> Elements;
   vtkNew<vtkDeformVolumeFilter> Resampler;
+  PositionSearch Positions;
   vtkNew<vtkCallbackCommand> ErrorObserver;
   vtkNew<vtkCallbackCommand> WarningObserver;
   std::string Message; // first error of the filters in an update

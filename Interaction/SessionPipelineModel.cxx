@@ -2,7 +2,6 @@
 // The model of the tissue, and its steps.
 #include "SessionPipeline.h"
 
-#include "SessionPositions.h"
 #include "VoxelSize.h"
 #include "vtkDeformVolumeSession.h"
 
@@ -321,7 +320,7 @@ std::vector<SessionPipeline::NodeOfHandle> SessionPipeline::FindNodes(const glm:
   {
     found.push_back(nearest);
   }
-  const glm::dvec3 handle = FindDeformedPosition(mesh, rest);
+  const glm::dvec3 handle = this->Positions.FindDeformedPosition(mesh, rest);
   std::vector<NodeOfHandle> nodes;
   for (const vtkIdType id : found)
   {

@@ -9,8 +9,8 @@
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDeformGeometryFilter.h"
+#include "vtkExecutive.h"
 #include "vtkImageData.h"
-#include "vtkNew.h"
 #include "vtkPlane.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -165,53 +165,6 @@ glm::dvec3 FindNearestDisplacement(vtkDataSet* mesh, const glm::dvec3& deformed)
   return nearest;
 }
 
-// Moves the points of a sheet with a mesh, to rest or from rest.
-void MoveWithMesh(vtkPolyData* sheet, vtkDataSet* mesh, bool isToRest)
-{
-  vtkNew<vtkDeformGeometryFilter> filter;
-  vtkNew<vtkCallbackCommand> nothing; // without it, points outside are a warning
-  filter->AddObserver(vtkCommand::WarningEvent, nothing);
-  filter->AddObserver(vtkCommand::ErrorEvent, nothing);
-  filter->SetInputData(sheet);
-  filter->SetDeformationData(mesh);
-  filter->SetOutsideModeToExtrapolate();
-  filter->SetInverse(isToRest);
-  filter->Update();
-  auto* moved = vtkPolyData::SafeDownCast(filter->GetOutput());
-  vtkPoints* points = sheet->GetPoints();
-  if (!moved || moved->GetNumberOfPoints() != points->GetNumberOfPoints())
-  {
-    throw std::runtime_error("The deformation mesh cannot move positions. Check that its "
-                             "displacements are finite.");
-  }
-  vtkDataArray* isMoved = moved->GetPointData()->GetArray("vtkValidPointMask");
-  for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
-  {
-    if (isMoved->GetComponent(id, 0) != 0.0)
-    {
-      points->SetPoint(id, moved->GetPoint(id));
-    }
-    else
-    {
-      // Far outside the tissue, where the extrapolated map may have no inverse.
-      const glm::dvec3 position = GetPosition(sheet, id);
-      const glm::dvec3 rest = position - FindNearestDisplacement(mesh, position);
-      points->SetPoint(id, &rest.x);
-    }
-  }
-}
-
-glm::dvec3 MoveWithMesh(const glm::dvec3& position, vtkDataSet* mesh, bool isToRest)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->InsertNextPoint(&position.x);
-  vtkNew<vtkPolyData> sheet;
-  sheet->SetPoints(points);
-  MoveWithMesh(sheet, mesh, isToRest);
-  return GetPosition(sheet, 0);
-}
-
 // Removes what lies farther from a deformed body than an edge of the subdivided sheet, because the
 // time of the subdivision grows with the square of the number of triangles. Returns the whole sheet
 // if all of it is far, so that the cut is an edit that can be undone.
@@ -255,24 +208,78 @@ vtkSmartPointer<vtkPolyData> CutOffFarParts(
 
 } // namespace
 
-glm::dvec3 deformvolume::FindRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed)
+namespace deformvolume
+{
+
+PositionSearch::PositionSearch()
+{
+  vtkNew<vtkCallbackCommand> nothing; // without it, points outside are a warning
+  this->Filter->AddObserver(vtkCommand::WarningEvent, nothing);
+  this->Filter->AddObserver(vtkCommand::ErrorEvent, nothing);
+  this->Filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, nothing);
+  this->Filter->SetOutsideModeToExtrapolate();
+}
+
+PositionSearch::~PositionSearch() = default;
+
+void PositionSearch::MoveWithMesh(vtkPolyData* sheet, vtkDataSet* mesh, bool isToRest)
+{
+  this->Filter->SetInputData(sheet);
+  this->Filter->SetDeformationData(mesh);
+  this->Filter->SetInverse(isToRest);
+  if (this->Filter->GetExecutive()->Update(0) == 0)
+  {
+    throw std::runtime_error("The deformation mesh cannot move positions. Check that its "
+                             "displacements are finite.");
+  }
+  auto* moved = vtkPolyData::SafeDownCast(this->Filter->GetOutput());
+  vtkPoints* points = sheet->GetPoints();
+  vtkDataArray* isMoved = moved->GetPointData()->GetArray("vtkValidPointMask");
+  for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
+  {
+    if (isMoved->GetComponent(id, 0) != 0.0)
+    {
+      points->SetPoint(id, moved->GetPoint(id));
+    }
+    else
+    {
+      // Far outside the tissue, where the extrapolated map may have no inverse.
+      const glm::dvec3 position = GetPosition(sheet, id);
+      const glm::dvec3 rest = position - FindNearestDisplacement(mesh, position);
+      points->SetPoint(id, &rest.x);
+    }
+  }
+}
+
+glm::dvec3 PositionSearch::MoveWithMesh(const glm::dvec3& position, vtkDataSet* mesh, bool isToRest)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->InsertNextPoint(&position.x);
+  vtkNew<vtkPolyData> sheet;
+  sheet->SetPoints(points);
+  this->MoveWithMesh(sheet, mesh, isToRest);
+  return GetPosition(sheet, 0);
+}
+
+glm::dvec3 PositionSearch::FindRestPosition(vtkDataSet* deformation, const glm::dvec3& deformed)
 {
   auto* field = vtkImageData::SafeDownCast(deformation);
   if (!field)
   {
-    return MoveWithMesh(deformed, deformation, true);
+    return this->MoveWithMesh(deformed, deformation, true);
   }
   glm::dvec3 rest;
   return SearchField(field, deformed, rest) ? rest : FindNearestVoxel(field, deformed);
 }
 
-glm::dvec3 deformvolume::FindDeformedPosition(vtkDataSet* deformation, const glm::dvec3& rest)
+glm::dvec3 PositionSearch::FindDeformedPosition(vtkDataSet* deformation, const glm::dvec3& rest)
 {
   auto* field = vtkImageData::SafeDownCast(deformation);
-  return field ? rest + Interpolate(field, rest) : MoveWithMesh(rest, deformation, false);
+  return field ? rest + Interpolate(field, rest) : this->MoveWithMesh(rest, deformation, false);
 }
 
-vtkSmartPointer<vtkPolyData> deformvolume::MoveToRest(vtkPolyData* sheet, vtkDataSet* deformation)
+vtkSmartPointer<vtkPolyData> PositionSearch::MoveToRest(vtkPolyData* sheet, vtkDataSet* deformation)
 {
   constexpr double edgesOnBody = 40.0;
   constexpr double mostEdges = 60.0; // on the diagonal of a sheet
@@ -289,7 +296,7 @@ vtkSmartPointer<vtkPolyData> deformvolume::MoveToRest(vtkPolyData* sheet, vtkDat
   auto* field = vtkImageData::SafeDownCast(deformation);
   if (!field)
   {
-    MoveWithMesh(rest, deformation, true);
+    this->MoveWithMesh(rest, deformation, true);
     return rest;
   }
   vtkPoints* points = rest->GetPoints();
@@ -302,3 +309,5 @@ vtkSmartPointer<vtkPolyData> deformvolume::MoveToRest(vtkPolyData* sheet, vtkDat
   }
   return rest;
 }
+
+} // namespace deformvolume

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeformVolumeSession.h"
 
-#include "SessionPositions.h"
 #include "vtkDeformVolumeSessionInternals.h"
 
 #include "vtkCellData.h"
@@ -468,7 +467,7 @@ bool vtkDeformVolumeSession::Probe(double x, double y, double z)
     }
     vtkDataArray* scalars = output->GetPointData()->GetScalars();
     this->ProbedValue = scalars ? scalars->GetComponent(voxel, 0) : 0.0;
-    const glm::dvec3 rest = deformvolume::FindRestPosition(pipeline.GetDeformation(), { x, y, z });
+    const glm::dvec3 rest = pipeline.FindRestPosition({ x, y, z });
     std::copy(&rest.x, &rest.x + 3, this->ProbedRestPosition);
     return true;
   }

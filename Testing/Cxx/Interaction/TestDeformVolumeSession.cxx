@@ -1285,6 +1285,31 @@ TEST(DeformVolumeSession, LargeSheets)
   }
 }
 
+// The search structures of a mesh are kept until it moves.
+TEST(DeformVolumeSession, RepeatedProbes)
+{
+  Tested one(MakeVolume(Box));
+  one.Object->ChangeNumberOfNodes(25);
+  one.Object->ChangeModel(Session::MASS_SPRING);
+  const int handle = one.Object->BeginGrab(10, 10, 10);
+  for (const double x : { 10.5, 11.0 })
+  {
+    one.Object->MoveGrab(handle, x, 10, 10);
+    one.Step();
+    const auto probe = [&]()
+    {
+      const auto begin = std::chrono::steady_clock::now();
+      EXPECT_TRUE(one.Object->Probe(x, 10, 10));
+      const double* rest = one.Object->GetProbedRestPosition();
+      EXPECT_LT(glm::distance({ rest[0], rest[1], rest[2] }, glm::dvec3(10, 10, 10)), 1e-3);
+      return std::chrono::steady_clock::now() - begin;
+    };
+    const auto first = probe();
+    EXPECT_LT(2 * probe(), first);
+  }
+  EXPECT_EQ(one.TakeError(), "");
+}
+
 // Another handle that holds deformed tissue moves nothing before it is moved.
 TEST(DeformVolumeSession, GrabsMoveNothing)
 {
