@@ -9,16 +9,19 @@
 #include "vtkCarveVolume.h"
 #include "vtkChainMailDeformation.h"
 #include "vtkCutVolume.h"
+#include "vtkDataArray.h"
 #include "vtkDeformVolumeFilter.h"
 #include "vtkExecutive.h"
 #include "vtkFiniteElementDeformation.h"
 #include "vtkImageData.h"
 #include "vtkMassSpringDeformation.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -268,9 +271,23 @@ void SessionPipeline::Apply(const SessionEvent& event)
   }
 }
 
-glm::dvec3 SessionPipeline::FindRestPosition(const glm::dvec3& deformed)
+glm::dvec3 SessionPipeline::FindRestPosition(const glm::dvec3& deformed, const Sampling& sampling)
 {
-  return this->Positions.FindRestPosition(this->GetDeformation(), deformed);
+  const glm::dvec3 found = this->Positions.FindRestPosition(this->GetDeformation(), deformed);
+  if (!this->MayOverlap())
+  {
+    return found;
+  }
+  vtkImageData* output = this->ResampleForSearch(sampling);
+  const vtkIdType voxel = output->FindPoint(deformed.x, deformed.y, deformed.z);
+  if (voxel < 0 ||
+    output->GetPointData()->GetArray("vtkValidPointMask")->GetComponent(voxel, 0) == 0.0)
+  {
+    return found;
+  }
+  glm::dvec3 shown; // at the voxel, so that `found` is more accurate if it is on this side
+  output->GetPointData()->GetArray("RestPosition")->GetTuple(voxel, &shown.x);
+  return glm::distance(found, shown) <= GetLargestVoxelSize(this->Volume) ? found : shown;
 }
 
 void SessionPipeline::BeginGrab(double handle, const glm::dvec3& position)
@@ -300,7 +317,7 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   drag.Handle = handle;
   drag.IsGrabbed = drag.IsHeld = true;
   const bool isWithinReach = IsWithinReach(this->Volume, position);
-  drag.Rest = isWithinReach ? this->FindRestPosition(position) : position;
+  drag.Rest = isWithinReach ? this->FindRestPosition(position, {}) : position;
   if (!isWithinReach || !MoveIntoVolume(this->Volume, drag.Rest))
   {
     throw std::runtime_error("The grabbed position " + Format(&position.x) +

@@ -65,11 +65,14 @@ public:
   };
   /// Returns the deformed volume. Throws std::runtime_error if a filter fails.
   vtkImageData* Resample(const Sampling& sampling);
+  /// The same. If sides of a cut may overlap, the output has rest positions.
+  vtkImageData* ResampleForSearch(const Sampling& sampling);
 
   vtkImageData* GetVolume() { return this->Volume; }
   vtkDataSet* GetDeformation();
-  /// Returns the position at rest of a position of the deformed body.
-  glm::dvec3 FindRestPosition(const glm::dvec3& deformed);
+  /// Returns the position at rest of the tissue at a position. Where the sides of a cut overlap,
+  /// this is the side that the output of ResampleForSearch() shows.
+  glm::dvec3 FindRestPosition(const glm::dvec3& deformed, const Sampling& sampling);
   int GetModel() const { return this->Model; }
   /// Number of voxels that ChainMail has moved in the last step; 0 with other models.
   vtkIdType GetNumberOfMovedVoxels();
@@ -165,6 +168,8 @@ private:
   // the handle radius, or else those of the tetrahedron that contains the position, or else the
   // nearest one. Other handles may hold them, too.
   std::vector<NodeOfHandle> FindNodes(const glm::dvec3& rest);
+  bool MayOverlap() const;
+  vtkImageData* Resample(const Sampling& sampling, bool hasRestPositions);
   void Update(vtkAlgorithm* filter);
   void Connect();
   void MakeUndeformedMesh();

@@ -485,14 +485,34 @@ bool SessionPipeline::FindMotion()
   return this->QuietSteps < (this->Model == Session::MASS_SPRING ? 10 : 1);
 }
 
-vtkImageData* SessionPipeline::Resample(const Sampling& sampling)
+vtkImageData* SessionPipeline::Resample(const Sampling& sampling, bool hasRestPositions)
 {
   this->Resampler->SetSamplingFactor(sampling.Factor);
   this->Resampler->SetPadding(sampling.Padding);
   this->Resampler->SetBackgroundValue(sampling.BackgroundValue);
+  this->Resampler->SetGenerateRestPositions(hasRestPositions);
   this->Update(this->Resampler);
-  this->CheckHandles();
   return this->Resampler->GetOutput();
+}
+
+vtkImageData* SessionPipeline::Resample(const Sampling& sampling)
+{
+  vtkImageData* output = this->Resample(sampling, false);
+  this->CheckHandles();
+  return output;
+}
+
+// Not in each step, because rest positions take longer than the voxels.
+vtkImageData* SessionPipeline::ResampleForSearch(const Sampling& sampling)
+{
+  return this->Resample(sampling, this->MayOverlap());
+}
+
+bool SessionPipeline::MayOverlap() const
+{
+  return this->Model != Session::NONE && !this->Volume->GetPointData()->HasArray("RestPosition") &&
+    std::any_of(this->Done.begin(), this->Done.end(),
+      [](const Action& action) { return action.Kind == Action::CUT; });
 }
 
 void SessionPipeline::CheckHandles()

@@ -458,7 +458,8 @@ bool vtkDeformVolumeSession::Probe(double x, double y, double z)
   {
     const vtkInternals::Access access(*this->Internals);
     deformvolume::SessionPipeline& pipeline = this->Internals->Pipeline;
-    vtkImageData* output = pipeline.Resample(this->Internals->GetFullSampling());
+    const auto sampling = this->Internals->GetFullSampling();
+    vtkImageData* output = pipeline.ResampleForSearch(sampling);
     const vtkIdType voxel = output->FindPoint(x, y, z);
     vtkDataArray* covered = output->GetPointData()->GetArray("vtkValidPointMask");
     if (voxel < 0 || !covered || covered->GetComponent(voxel, 0) == 0.0)
@@ -467,7 +468,7 @@ bool vtkDeformVolumeSession::Probe(double x, double y, double z)
     }
     vtkDataArray* scalars = output->GetPointData()->GetScalars();
     this->ProbedValue = scalars ? scalars->GetComponent(voxel, 0) : 0.0;
-    const glm::dvec3 rest = pipeline.FindRestPosition({ x, y, z });
+    const glm::dvec3 rest = pipeline.FindRestPosition({ x, y, z }, sampling);
     std::copy(&rest.x, &rest.x + 3, this->ProbedRestPosition);
     return true;
   }

@@ -266,7 +266,8 @@ public:
   ///@{
   /**
    * Get the value at a position of the deformed volume (the first component of the scalars), and
-   * its rest position. Probe() returns false if no tissue is there. It waits for the end of a step.
+   * its rest position. Where the sides of a cut overlap, both are those of the visible side.
+   * Probe() returns false if no tissue is there. It waits for the end of a step.
    */
   bool Probe(double x, double y, double z);
   vtkGetMacro(ProbedValue, double);

@@ -1285,6 +1285,49 @@ TEST(DeformVolumeSession, LargeSheets)
   }
 }
 
+// Of the sides of a cut that overlap, probes and grabs take the one that is visible.
+TEST(DeformVolumeSession, OverlappingSides)
+{
+  const auto volume = MakeImage({ { 0, 23, 0, 23, 0, 23 } });
+  vtkNew<vtkDoubleArray> values; // the position at rest on y
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    values->InsertNextValue(volume->GetPoint(id)[1]);
+  }
+  volume->GetPointData()->SetScalars(values);
+  for (const int model : { Session::CHAIN_MAIL, Session::MASS_SPRING })
+  {
+    Tested one(volume);
+    one.Object->ChangeModel(model);
+    one.Object->ChangeHandleRadius(3);
+    one.Object->Cut(MakePlane({ 12, 11.3, 35 }, { 100, 0, 0 }, { 0, 0, 51 }));
+    const int right = one.Object->BeginGrab(12, 15, 22);
+    const int left = one.Object->BeginGrab(12, 8, 22);
+    one.Object->MoveGrab(right, 12, 11, 22);
+    one.Object->MoveGrab(left, 12, 12, 22);
+    one.Finish();
+    int found = 0;
+    for (int i = 0; i < 9 * 9 * 9; ++i)
+    {
+      if (one.Object->Probe(8 + i % 9, 8 + i / 9 % 9, 14 + i / 81))
+      {
+        ++found;
+        EXPECT_NEAR(one.Object->GetProbedRestPosition()[1], one.Object->GetProbedValue(), 1.0);
+      }
+    }
+    EXPECT_GT(found, 500);
+    EXPECT_TRUE(one.Object->Probe(14, 14, 19));
+    one.Object->ChangeHandleRadius(0);
+    one.Object->BeginGrab(14, 14, 19);
+    one.Step();
+    vtkNew<vtkPolyData> handles;
+    one.Object->GetHandles(handles);
+    EXPECT_EQ(one.TakeError(), "");
+    EXPECT_NEAR(handles->GetPointData()->GetArray("RestPosition")->GetComponent(2, 1),
+      one.Object->GetProbedValue(), 1.0);
+  }
+}
+
 // The search structures of a mesh are kept until it moves.
 TEST(DeformVolumeSession, RepeatedProbes)
 {
