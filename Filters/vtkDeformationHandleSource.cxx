@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeformationHandleSource.h"
 
+#include "PieceRequest.h"
+
 #include "vtkCellArray.h"
+#include "vtkDemandDrivenPipeline.h"
 #include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -10,7 +13,6 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +47,7 @@ int vtkDeformationHandleSource::RequestData(
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   output->Initialize();
   vtkInformation* info = outputVector->GetInformationObject(0);
-  if (info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER()) > 0)
+  if (!deformvolume::IsFirstPiece(outputVector))
   {
     return 1;
   }
@@ -54,7 +56,7 @@ int vtkDeformationHandleSource::RequestData(
     vtkErrorMacro("RestPosition or Position is not finite. Set finite coordinates.");
     info->Set(
       vtkDemandDrivenPipeline::DATA_NOT_GENERATED(), 1); // so that the next update fails, too
-    return 0;
+    return deformvolume::GetResultOfError(outputVector);
   }
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();

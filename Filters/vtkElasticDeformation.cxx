@@ -204,10 +204,15 @@ int vtkElasticDeformation::RequestData(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   vtkUnstructuredGrid::GetData(output)->Initialize();
-  return this->Internals->Execution.Run(this,
-    "There is not enough memory for the simulation. Use a coarser mesh, or free "
-    "memory.",
-    [&] { this->Execute(input, output); });
+  if (this->Internals->Execution.Run(this,
+        "There is not enough memory for the simulation. Use a coarser mesh, or free "
+        "memory.",
+        [&] { this->Execute(input, output); }))
+  {
+    return 1;
+  }
+  vtkUnstructuredGrid::GetData(output)->Initialize();
+  return deformvolume::GetResultOfError(output);
 }
 
 void vtkElasticDeformation::Execute(

@@ -274,7 +274,7 @@ int vtkLatticeTetrahedraSource::RequestData(
   catch (const Error& error)
   {
     vtkErrorMacro(<< error.what());
-    return 0;
+    return deformvolume::GetResultOfError(outputVector);
   }
 
   const std::array<int, 3>& nodes = lattice.Nodes;

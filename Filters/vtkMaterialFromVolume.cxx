@@ -188,10 +188,15 @@ int vtkMaterialFromVolume::RequestData(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   vtkUnstructuredGrid::GetData(output)->Initialize();
-  return this->Internals->Execution.Run(this,
-    "There is not enough memory for the materials of the voxels. Use a smaller "
-    "volume, or free memory.",
-    [&] { this->Execute(input, output); });
+  if (this->Internals->Execution.Run(this,
+        "There is not enough memory for the materials of the voxels. Use a smaller "
+        "volume, or free memory.",
+        [&] { this->Execute(input, output); }))
+  {
+    return 1;
+  }
+  vtkUnstructuredGrid::GetData(output)->Initialize();
+  return deformvolume::GetResultOfError(output); // a rank may have no cells, and no error
 }
 
 void vtkMaterialFromVolume::Execute(

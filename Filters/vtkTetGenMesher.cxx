@@ -273,13 +273,13 @@ int vtkTetGenMesher::RequestData(
   {
     vtkErrorMacro("Not enough memory. Use a greater edge length.");
     this->Incomplete = true;
-    result = 0;
+    result = deformvolume::GetResultOfError(outputVector);
   }
   catch (const std::exception& error)
   {
     vtkErrorMacro(<< error.what());
     this->Incomplete = true;
-    result = 0;
+    result = deformvolume::GetResultOfError(outputVector);
   }
   if (this->Incomplete)
   {

@@ -20,6 +20,15 @@ inline bool IsFirstPiece(vtkInformationVector* output)
   return !info->Has(key) || info->Get(key) <= 0;
 }
 
+/// The result of a request after an error: 0, and 1 if one piece of several is requested. Ranks
+/// whose results differ would wait for each other forever in filters downstream that communicate.
+inline int GetResultOfError(vtkInformationVector* output)
+{
+  vtkInformation* info = output->GetInformationObject(0);
+  vtkInformationIntegerKey* key = vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES();
+  return info->Has(key) && info->Get(key) > 1 ? 1 : 0;
+}
+
 /// Requests the whole of an input as one piece.
 inline void AskForAll(vtkInformation* info)
 {

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Deforms a volume by a simulated body on several ranks: each rank makes its piece of the output,
-// and all pieces equal the output of one process to the last bit, also after a cut.
+// and all pieces equal the output of one process to the last bit, also after a cut. After an error,
+// all ranks have the same result.
 #include "ChainMailTesting.h"
 #include "DivisionCases.h"
 #include "EditChecks.h"
 #include "RankTesting.h"
 
+#include <vtkDeformationHandleSource.h>
 #include <vtkFiniteElementDeformation.h>
 #include <vtkLatticeTetrahedraSource.h>
 #include <vtkMassSpringDeformation.h>
+#include <vtkPolyData.h>
+#include <vtkTetGenMesher.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <cmath>
 #include <functional>
 
 using namespace chainMailTesting;
@@ -98,6 +103,58 @@ void TestSteps()
   }
 }
 
+/// Updates a filter that fails on the first rank. Ranks with different results would wait for each
+/// other forever in filters downstream that communicate.
+template <typename Filter>
+void TestFailure(Observed<Filter>& observed)
+{
+  for (int repeat = 0; repeat < 2; ++repeat) // nothing changes before the second update
+  {
+    const int result = observed.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
+    EXPECT_EQ(result, GetRanks() > 1 ? 1 : 0) << observed.Filter->GetClassName();
+    EXPECT_EQ(observed.Observer->GetError(), GetRank() == 0) << observed.Filter->GetClassName();
+    EXPECT_EQ(observed.Filter->GetOutput()->GetNumberOfPoints(), 0);
+    observed.ClearMessages();
+  }
+}
+
+template <typename Filter>
+void TestSuccess(Observed<Filter>& observed)
+{
+  EXPECT_EQ(observed.Filter->UpdatePiece(GetRank(), GetRanks(), 0), 1);
+  EXPECT_EQ(observed.Observer->GetErrorMessage(), "");
+  EXPECT_EQ(observed.Filter->GetOutput()->GetNumberOfPoints() > 0, GetRank() == 0);
+}
+
+void TestErrors()
+{
+  Observed<vtkLatticeTetrahedraSource> lattice;
+  lattice.Filter->SetNumberOfNodes(1, 3, 3);
+  TestFailure(lattice);
+  lattice.Filter->SetNumberOfNodes(3, 3, 3);
+  TestSuccess(lattice);
+
+  Observed<vtkFiniteElementDeformation> body;
+  body.Filter->SetInputConnection(lattice.Filter->GetOutputPort());
+  body.Filter->SetHandlesData(MakeHandles({ { glm::dvec3(0.5), glm::dvec3(0.5, 0.5, 0.6) } }));
+  body.Filter->SetHandleRadius(0.6);
+  body.Filter->SetPoissonRatio(0.6);
+  TestFailure(body);
+  body.Filter->SetPoissonRatio(0.3);
+  TestSuccess(body);
+
+  Observed<vtkDeformationHandleSource> handle;
+  handle.Filter->SetPosition(0.0, std::nan(""), 0.0);
+  TestFailure(handle);
+  handle.Filter->SetPosition(0.0, 1.0, 0.0);
+  TestSuccess(handle);
+
+  Observed<vtkTetGenMesher> mesher; // without a success, because TetGen may not be installed
+  mesher.Filter->SetInputData(divisionCases::MakeVolume(Box, glm::dvec3(1.0)));
+  mesher.Filter->SetTetGenExecutable("/no/such/program");
+  TestFailure(mesher);
+}
+
 } // namespace
 
 int main(int argc, char* argv[])
@@ -107,5 +164,6 @@ int main(int argc, char* argv[])
     {
       TestSteps<vtkMassSpringDeformation>();
       TestSteps<vtkFiniteElementDeformation>();
+      TestErrors();
     });
 }
