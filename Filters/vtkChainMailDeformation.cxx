@@ -220,6 +220,12 @@ int vtkChainMailDeformation::RequestData(
   request.PlasticityThreshold = this->PlasticityThreshold;
   deformvolume::ProgressReport progress(this);
   request.Progress = [&] { return progress.Report(); };
+  this->DeviceInUse.clear();
+  this->LargestViolation = 0.0;
+  this->NumberOfSweeps = 0;
+  this->NumberOfMovedVoxels = 0;
+  this->NumberOfReducedHandles = 0;
+  this->NumberOfReleasedHandles = 0;
   std::fill_n(this->ChangedExtent, 6, -1);
   this->ChangedExtent[0] = this->ChangedExtent[2] = this->ChangedExtent[4] = 0;
   return this->Internals->Execution.Run(this,

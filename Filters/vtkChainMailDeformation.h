@@ -253,12 +253,13 @@ public:
   ///@}
 
   /**
-   * Get the name of the device of the last execution; "" before the first.
+   * Get the name of the device of the last execution; "" before the first, and after an error.
    */
   vtkGetMacro(DeviceInUse, std::string);
 
   /**
-   * Get the device and the counters of the last execution as text; "" before the first.
+   * Get the device and the counters of the last execution as text; "" before the first, and after
+   * an error.
    */
   std::string GetSummary();
 

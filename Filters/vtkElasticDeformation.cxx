@@ -212,6 +212,8 @@ int vtkElasticDeformation::RequestData(
     return 1;
   }
   vtkUnstructuredGrid::GetData(output)->Initialize();
+  this->NumberOfHeldNodes = 0;
+  this->ClearReport();
   return deformvolume::GetResultOfError(output);
 }
 
@@ -391,7 +393,7 @@ std::size_t vtkElasticDeformation::UpdateCuts(vtkPolyData* sheet)
 std::string vtkElasticDeformation::GetSummary()
 {
   const deformvolume::ElasticSession& session = this->Internals->Session;
-  if (!session.HasBody())
+  if (!session.HasBody() || this->Internals->Execution.HasFailed())
   {
     return std::string();
   }

@@ -323,7 +323,7 @@ public:
   vtkGetMacro(NumberOfHeldNodes, vtkIdType);
 
   /**
-   * Get a description of the last execution as text; "" before the first.
+   * Get a description of the last execution as text; "" before the first, and after an error.
    */
   virtual std::string GetSummary();
 
@@ -344,9 +344,11 @@ protected:
 #ifndef __VTK_WRAP__
   ///@{
   /// Subclasses implement these: set the properties of the simulation and return it; return the
-  /// duration that an update without a time simulates, in s. They throw deformvolume::Error.
+  /// duration that an update without a time simulates, in s; clear the numbers of the last frame,
+  /// after an update that failed. The first two throw deformvolume::Error.
   virtual deformvolume::ElasticSimulation& PrepareSimulation() = 0;
   virtual double GetFreeDuration() = 0;
+  virtual void ClearReport() = 0;
   ///@}
 #endif
 

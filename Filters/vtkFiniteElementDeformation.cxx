@@ -33,6 +33,11 @@ deformvolume::ElasticSimulation& vtkFiniteElementDeformation::PrepareSimulation(
   return this->Internals->Simulation;
 }
 
+void vtkFiniteElementDeformation::ClearReport()
+{
+  this->Internals->Simulation.Report = deformvolume::EquilibriumReport();
+}
+
 bool vtkFiniteElementDeformation::GetIsConverged()
 {
   return this->Internals->Simulation.Report.IsConverged;

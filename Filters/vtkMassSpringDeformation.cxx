@@ -43,6 +43,14 @@ deformvolume::ElasticSimulation& vtkMassSpringDeformation::PrepareSimulation()
   return *simulation;
 }
 
+void vtkMassSpringDeformation::ClearReport()
+{
+  if (this->Internals->Simulation)
+  {
+    this->Internals->Simulation->Report = deformvolume::MassSpringReport();
+  }
+}
+
 double vtkMassSpringDeformation::GetStableTimeStep()
 {
   return this->Internals->Simulation ? this->Internals->Simulation->GetStableTimeStep() : 0.0;

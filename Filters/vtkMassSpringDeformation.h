@@ -119,6 +119,7 @@ protected:
 
 #ifndef __VTK_WRAP__
   deformvolume::ElasticSimulation& PrepareSimulation() override;
+  void ClearReport() override;
   double GetFreeDuration() override
   {
     return this->GetFrameTime();

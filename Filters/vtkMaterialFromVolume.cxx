@@ -188,6 +188,8 @@ int vtkMaterialFromVolume::RequestData(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
   vtkUnstructuredGrid::GetData(output)->Initialize();
+  this->NumberOfTetrahedraWithoutVoxels = 0;
+  this->NumberOfTetrahedraOutside = 0;
   if (this->Internals->Execution.Run(this,
         "There is not enough memory for the materials of the voxels. Use a smaller "
         "volume, or free memory.",

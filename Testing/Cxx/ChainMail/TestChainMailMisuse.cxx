@@ -137,8 +137,11 @@ void CheckMaterials(Dragged& dragged)
 
 void CheckSettings(Dragged& dragged)
 {
+  EXPECT_GT(dragged.Filter->GetNumberOfMovedVoxels(), 0);
   dragged.Filter->SetDevice("no such device");
   EXPECT_TRUE(HasPart(dragged.TryUpdate(), "no such device"));
+  EXPECT_EQ(dragged.Filter->GetNumberOfMovedVoxels(), 0);
+  EXPECT_EQ(dragged.Filter->GetSummary(), "");
   dragged.Filter->SetDevice("");
   const vtkSmartPointer<vtkImageData> large = MakeVolume({ { 0, 30, 0, 30, 0, 30 } });
   vtkNew<vtkChainMailDeformation> other;
@@ -175,10 +178,10 @@ TEST(ChainMailMisuse, ErrorsChangeNothing)
   Dragged undisturbed(other);
   std::vector<Handle> handles{ { glm::dvec3(4, 6, 6), glm::dvec3(6, 6, 5) } };
   EXPECT_TRUE(HaveEqualBits(dragged.Drag(handles), undisturbed.Drag(handles)));
+  CheckSettings(dragged);
   CheckHandles(dragged, handles);
   CheckVolumeArrays(dragged, volume);
   CheckMaterials(dragged);
-  CheckSettings(dragged);
   // The errors have not changed the displacements of the first drag.
   handles = { { glm::dvec3(9, 6, 6), glm::dvec3(9.5, 9, 6) } };
   EXPECT_TRUE(HaveEqualBits(dragged.Drag(handles), undisturbed.Drag(handles)));

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <type_traits>
 
 using namespace elasticTesting;
 using namespace chainMailTesting;
@@ -693,6 +694,38 @@ TYPED_TEST(ElasticModels, HeldNodes)
   }
   EXPECT_EQ(held[0], 6);
   EXPECT_EQ(held[1], 6); // seven nodes are in its range, but the first handle holds one of them
+}
+
+// After an error, no results of the update before are left.
+TYPED_TEST(ElasticModels, ResultsAfterError)
+{
+  Simulated<TypeParam> simulated(MakeBar(0.001));
+  simulated.Filter->SetLengthUnitToMillimetre();
+  simulated.Filter->SetHandleRadius(3.0);
+  simulated.Filter->SetHandlesData(MakeHandles({ { { 5.0, 5.0, 30.0 }, { 5.5, 5.0, 30.0 } } }));
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  const auto countSteps = [&]
+  {
+    if constexpr (std::is_same_v<TypeParam, vtkMassSpringDeformation>)
+    {
+      return simulated.Filter->GetNumberOfSteps();
+    }
+    else
+    {
+      return simulated.Filter->GetNumberOfNewtonSteps();
+    }
+  };
+  EXPECT_GT(simulated.Filter->GetNumberOfHeldNodes(), 0);
+  EXPECT_GT(countSteps(), 0);
+  EXPECT_NE(simulated.Filter->GetSummary(), "");
+  simulated.Filter->SetPoissonRatio(0.6);
+  EXPECT_NE(simulated.TryUpdate(), "");
+  EXPECT_EQ(simulated.Filter->GetNumberOfHeldNodes(), 0);
+  EXPECT_EQ(countSteps(), 0);
+  EXPECT_EQ(simulated.Filter->GetSummary(), "");
+  simulated.Filter->SetPoissonRatio(0.3);
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  EXPECT_NE(simulated.Filter->GetSummary(), "");
 }
 
 // Hidden and duplicate cells, and cells with a hidden point, are not part of the body.
