@@ -256,8 +256,11 @@ int vtkTetGenMesher::RequestData(
     const std::vector<deformvolume::RefinementSphere> spheres = GetSpheres(this->RefinementSpheres);
     if (vtkImageData* volume = vtkImageData::SafeDownCast(input))
     {
-      this->MeshVolume(
-        volume, FindArray(this->GetInputArrayToProcess(0, inputVector), volume), spheres, output);
+      // The name is empty in ParaView if no array was known when the filter was made.
+      const char* name = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
+      vtkDataArray* array = name && !*name ? volume->GetPointData()->GetScalars()
+                                           : this->GetInputArrayToProcess(0, inputVector);
+      this->MeshVolume(volume, FindArray(array, volume), spheres, output);
     }
     else if (vtkPolyData* surface = vtkPolyData::SafeDownCast(input))
     {
