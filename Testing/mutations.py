@@ -563,6 +563,8 @@ MUTATIONS = {
                        "if (false)", ["Cxx.TestDeformSamplingFactor"]),
     "piece-errors": ("Filters/Pipeline/PieceRequest.h", "info->Has(key) && info->Get(key) > 1 ? 1 : 0", "0",
                      ["Parallel.TestPhysicsRanks.2"]),
+    "carve-label-part": ("Filters/Cutting/vtkCarveVolumeExecution.cxx", "labels && isWhole &&", "labels &&",
+                         ["Parallel.TestEditRanks.2"]),
     # The plugin.
     "plugin-command": ("Plugin/CarveVolume.xml", 'command="SetSmoothBoundary"', 'command="SetAccumulate"', [PROPERTIES]),
     "plugin-port": ("Plugin/CutVolume.xml", 'command="SetSheetConnection">', 'command="SetRestConnection">', [PROPERTIES]),

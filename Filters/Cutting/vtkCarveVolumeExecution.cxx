@@ -220,7 +220,10 @@ void vtkCarveVolume::vtkInternals::Execute(vtkInformationVector** input)
     byTool = finder.CarveSweptSphere(stroke, this->Self->ToolRadius);
   }
 
-  if (labels && changes.size() > beforeLabel &&
+  // Other ranks may have voxels with a label that this part of the volume lacks.
+  const bool isWhole = finder.Volume.PointExtent ==
+    deformvolume::GetGeometry(input[0]->GetInformationObject(0)).PointExtent;
+  if (labels && isWhole && changes.size() > beforeLabel &&
     !deformvolume::HasLabel(finder.Volume.PointExtent, readLabels, this->Self->Label))
   {
     vtkWarningWithObjectMacro(this->Self,

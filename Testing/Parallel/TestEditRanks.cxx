@@ -2,6 +2,7 @@
 // Cuts, carves and drags a volume on several ranks: each rank makes its piece of the output, and
 // all pieces equal the output of one process to the last bit, after each step of the drag, after
 // undo and redo, and in a folded volume.
+#include "ArrayMaking.h"
 #include "ChainMailTesting.h"
 #include "DivisionCases.h"
 #include "EditChecks.h"
@@ -9,6 +10,8 @@
 
 #include <vtkCarveVolume.h>
 #include <vtkCutVolume.h>
+#include <vtkPointData.h>
+#include <vtkShortArray.h>
 #include <vtkSphere.h>
 
 #include <functional>
@@ -135,9 +138,33 @@ void TestSteps()
   EXPECT_GT(folded, 1);
 }
 
+// A label that only one rank has is not reported as missing.
+void TestLabel()
+{
+  auto volume = divisionCases::MakeVolume(Box, glm::dvec3(1.0));
+  const auto labels = MakeArray<vtkShortArray>("labels", volume->GetNumberOfPoints());
+  labels->Fill(0.0);
+  labels->SetValue(labels->GetNumberOfValues() - 1, 2);
+  volume->GetPointData()->AddArray(labels);
+  vtkNew<PartSource> source;
+  source->SetVolume(volume);
+  Observed<vtkCarveVolume> carve;
+  carve.Filter->SetInputConnection(source->GetOutputPort());
+  carve.Filter->SetLabelArrayName("labels");
+  carve.Filter->SetLabel(2);
+  carve.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
+  EXPECT_EQ(carve.Observer->GetWarningMessage(), "");
+  EXPECT_EQ(carve.Observer->GetErrorMessage(), "");
+}
+
 } // namespace
 
 int main(int argc, char* argv[])
 {
-  return RunOnRanks(argc, argv, TestSteps);
+  return RunOnRanks(argc, argv,
+    []
+    {
+      TestSteps();
+      TestLabel();
+    });
 }
