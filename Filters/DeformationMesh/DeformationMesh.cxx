@@ -90,6 +90,13 @@ void CheckParts(const MeshParts& parts, vtkDataObject* object, const std::string
   constexpr const char* connect =
     ". Connect a vtkUnstructuredGrid with tetrahedra, or a "
     "vtkStructuredGrid, vtkExplicitStructuredGrid or vtkRectilinearGrid.";
+  if (parts.empty() && !parts.Ignored.empty())
+  {
+    throw Error("The composite dataset that is the " + name +
+      " holds no mesh, but image data: " + parts.Ignored +
+      ". Extract one image from the composite dataset and connect it, or merge the blocks to a "
+      "vtkUnstructuredGrid (vtkAppendFilter, in ParaView Merge Blocks).");
+  }
   if (parts.empty() && vtkCompositeDataSet::SafeDownCast(object))
   {
     throw Error("The composite dataset that is the " + name +

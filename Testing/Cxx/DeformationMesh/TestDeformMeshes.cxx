@@ -603,9 +603,12 @@ TEST(DeformMeshes, Grids)
   found.VerifyFailure("no tetrahedra, but 12 quad");
   // Image data in a composite dataset is not a mesh.
   vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, volume);
   found.Filter->SetDeformationData(blocks);
   found.VerifyFailure("holds no vtkUnstructuredGrid");
+  blocks->SetBlock(0, volume);
+  blocks->Modified();
+  found.VerifyFailure(
+    "holds no mesh, but image data: the block with flat index 1. Extract one image");
 }
 
 // Displacements that are exact in floats.
