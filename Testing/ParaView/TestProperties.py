@@ -32,6 +32,8 @@ OTHER_DEFAULTS = {
 }
 # Removed properties of former versions. TestOldFiles.py sets them.
 REMOVED = {"StreamInput", "WorkGroupSize", "NumberOfTimeSamples"}
+# Properties that the filters of main() are made with.
+SET_BY_TEST = {"AutomaticIsovalue", "Isovalue", "Labels", "MemoryLimit", "TargetEdgeLength", "ToolPositions"}
 # Valid values of lists. All other lists accept any numbers.
 LISTS = {
     ("vtkChainMailDeformation", "Materials"): [3, 0.5, 1.5, 0.25, 7, 0.25, 2.5, 0.125],
@@ -400,6 +402,19 @@ def check_shown(make):
     simple.Delete(proxy)
 
 
+def check_restored(proxy):
+    """Checks that the button Restore Defaults of a new filter changes nothing."""
+    for name, smproperty in properties_of(proxy).items():
+        if not smproperty.IsA("vtkSMVectorProperty") or smproperty.GetNoCustomDefault():
+            continue
+        before = elements_of(smproperty)
+        smproperty.ResetToDefault()
+        after = elements_of(smproperty)
+        # Values that the test itself has set are not defaults.
+        check(before == after or name in SET_BY_TEST, f"{proxy.GetXMLName()}.{name}: {before} becomes {after}")
+    simple.Delete(proxy)
+
+
 def check_background(volume):
     """Checks that the background is the least value if the type of the scalars has negative numbers, and otherwise
     0."""
@@ -454,6 +469,12 @@ def check_defaults(volume):
     check(list(filter_.DisplacementArray) == ["POINTS", "u"], f"DisplacementArray is {filter_.DisplacementArray}")
     check(list(filter_.CustomBounds) == [-6.0, 6.0] * 3, f"CustomBounds is {list(filter_.CustomBounds)}")
     check(filter_.Device == "best", f"Device is {filter_.Device}")
+    # Panels offer only images as the reference image.
+    blocks = simple.GroupDatasets(Input=[volume])
+    blocks.UpdatePipeline()
+    reference = simple.DeformVolume(Volume=volume).SMProxy.GetProperty("Reference")
+    reference.SetInputConnection(0, blocks.SMProxy, 0)
+    check(not reference.IsInDomains(), "A composite dataset is offered as the reference image")
     check(list(filter_.CategoricalArrays) == [], f"CategoricalArrays is {list(filter_.CategoricalArrays)}")
     # Of several arrays of vectors, the active one is chosen.
     two = simple.Calculator(Input=mesh)
@@ -566,6 +587,7 @@ def main():
         tried += check_extremes(makers[name], None)
         check_limits(makers[name])
         check_shown(makers[name])
+        check_restored(makers[name]())
     tried += check_extremes(lambda: deform(OutputBoundsMode="Custom Bounds"), ["CustomBounds"])
     tried += check_extremes(lambda: deform(OutputSpacingMode="Custom Spacing"), ["CustomSpacing"])
     tried += check_extremes(lambda: deform(Resampler="Mesh Rasterization"), ["Interpolation"])
