@@ -566,6 +566,8 @@ MUTATIONS = {
     "carve-label-part": ("Filters/Cutting/vtkCarveVolumeExecution.cxx", "labels && isWhole &&", "labels &&",
                          ["Parallel.TestEditRanks.2"]),
     # The plugin.
+    "plugin-padding": ("Plugin/CutVolume.xml", 'mode="approximate_cell_length"',
+                       'mode="normal"', ["ParaView.TestEdits"]),
     "plugin-command": ("Plugin/CarveVolume.xml", 'command="SetSmoothBoundary"', 'command="SetAccumulate"', [PROPERTIES]),
     "plugin-port": ("Plugin/CutVolume.xml", 'command="SetSheetConnection">', 'command="SetRestConnection">', [PROPERTIES]),
     "plugin-background": ("Plugin/BackgroundDomain.cxx", "range[0] <= range[1] ? range[0] : 0.0", "0.0", [PROPERTIES]),

@@ -104,6 +104,13 @@ def check_hidden(volume):
     check(middle == [[0, 0, 0], [-10, 10] * 3], f"the default center and box of the plane are {middle}")
     cut.Plane.Center = [0, 0, 0.5]
     check(off(active(cut)) == 5 * 20 * 20, f"the plane switches off {off(active(cut))} tetrahedra")
+    # The plane crosses the faces of the volume, so that a smooth cut separates its sides.
+    smooth = simple.CutVolumeWithPlane(Volume=volume, SmoothCut=1)
+    smooth.Plane.Center = [0, 0, 0.5]
+    smooth.UpdatePipeline()
+    count = smooth.GetPropertyValue("DividedTetrahedra")
+    check(count == 5 * 20 * 20, f"the plane divides {count} tetrahedra")
+    check(smooth.Plane.Resolution == 1, f"the plane has {smooth.Plane.Resolution} cells on each axis")
     shown = simple.Threshold(
         Input=cut, Scalars=["POINTS", "RTData"], LowerThreshold=0, UpperThreshold=1000
     )

@@ -18,6 +18,7 @@ from PluginTesting import (
     fetch,
     load_plugin,
     messages,
+    wavelet,
 )
 
 SAVED = os.path.join(OUTPUT, "TestOldFiles.pvsm")
@@ -108,8 +109,37 @@ def check_elements():
     check(written.Mode == "Converged", f"the mode is {written.Mode}")
 
 
+def check_plane():
+    """Tests a state in which Cut Volume With Plane has the plane of ParaView."""
+    for source in reversed(list(simple.GetSources().values())):
+        simple.Delete(source)
+    volume = wavelet()
+    volume.UpdatePipeline()
+    cut = simple.CutVolumeWithPlane(registrationName="Cut", Volume=volume)
+    cut.Plane.Center, cut.Plane.Resolution = [0, 0, 2.5], 50
+    path = os.path.join(OUTPUT, "TestOldFilesPlane.pvsm")
+    simple.SaveState(path)
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    now = 'group="internal_sheets" type="CuttingPlane"'
+    check(text.count(now) == 1, "The state does not have one CuttingPlane")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text.replace(now, 'group="extended_sources" type="BoundedPlaneSource"'))
+    for source in reversed(list(simple.GetSources().values())):
+        simple.Delete(source)
+    with messages() as texts:
+        simple.LoadState(path)
+        loaded = simple.FindSource("Cut")
+        loaded.UpdatePipeline()
+    check_silent(texts)
+    plane = loaded.Plane
+    check([*plane.Center, plane.Resolution] == [0, 0, 2.5, 50], f"the plane has {plane.Center}, {plane.Resolution}")
+    check(loaded.SwitchedOffTetrahedra == 5 * 20 * 20, f"{loaded.SwitchedOffTetrahedra} tetrahedra are off")
+
+
 def main():
     load_plugin()
+    check_plane()
     check_elements()
     check_edits(os.path.join(sys.argv[1], "State-0.1-edits.pvsm"))
     state, script = (os.path.join(sys.argv[1], name) for name in ("State-0.1.pvsm", "Script-0.1.py"))
