@@ -17,7 +17,7 @@ class vtkDataSet;
 class vtkImageData;
 class vtkUnstructuredGrid;
 
-/// The volume for which demands.py states limits of time and memory.
+/// The volume of most benchmarks, that of table 1.
 inline constexpr std::array<int, 3> BenchmarkVolume{ { 189, 305, 229 } };
 /// A volume with half as many voxels.
 inline constexpr std::array<int, 3> HalfVolume{ { 150, 242, 182 } };

@@ -78,12 +78,6 @@ class Results:
         differences = [a - b for a, b in pairs if a is not None and b is not None]
         return statistics.median(differences) if differences else None
 
-    def ratio_to_counter(self, name, key):
-        """Median of the ratios of the time to a counter in seconds within each round."""
-        pairs = zip(self.values(name), self.values(name, key))
-        ratios = [a / (1e3 * b) for a, b in pairs if a is not None and b]
-        return statistics.median(ratios) if ratios else None
-
     def ratio(self, name, other, key="real_time"):
         """Median of the ratios of name to other within each round."""
         pairs = zip(self.values(name, key), self.values(other, key))
