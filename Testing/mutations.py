@@ -561,6 +561,8 @@ MUTATIONS = {
                         [PIPELINES]),
     "changed-factor": ("Filters/DeformVolume/vtkDeformVolumeFilterExecution.cxx", "if (!hasComparableOutput)",
                        "if (!hasComparableOutput && false)", ["Cxx.TestDeformSamplingFactor"]),
+    "ignored-on-rank": ("Filters/DeformationMesh/MeshGathering.cxx", "GetFirstText(ranks, piece.IgnoredCells)",
+                        "piece.IgnoredCells", ["Parallel.TestDeformRanks.2"]),
     "piece-errors": ("Filters/Pipeline/PieceRequest.h", "info->Get(key) > 1 ? 1 : 0", "info->Get(key) > 9 ? 1 : 0",
                      ["Parallel.TestPhysicsRanks.2"]),
     "carve-label-part": ("Filters/Cutting/vtkCarveVolumeExecution.cxx", "labels && isWhole &&",

@@ -163,6 +163,15 @@ void JoinCopies(std::vector<Tetrahedron>& tetrahedra, const std::vector<glm::dve
   }
 }
 
+// Returns the text of the first rank that has one; "" if none has. Collective.
+std::string GetFirstText(const Ranks& ranks, const std::string& text)
+{
+  const std::vector<char> texts = ranks.Gather(text.c_str(), text.size() + 1, MESH_NAME);
+  const auto first =
+    std::find_if(texts.begin(), texts.end(), [](char character) { return character != '\0'; });
+  return first == texts.end() ? std::string() : std::string(&*first);
+}
+
 } // namespace
 
 struct MeshGathering::Piece
@@ -283,8 +292,8 @@ DeformationSource MeshGathering::Gather(
     AddToHash(hash, piece.Derived.Weights);
     AddToHash(hash, piece.RestPoints);
     AddToHash(hash, piece.Vectors);
-    this->IgnoredCells = piece.IgnoredCells;
-    this->WrongOrder = piece.WrongOrder;
+    this->IgnoredCells = GetFirstText(ranks, piece.IgnoredCells);
+    this->WrongOrder = GetFirstText(ranks, piece.WrongOrder);
     if (!ranks.AreEqual(hash))
     {
       const std::size_t mine = piece.RestPoints.size();

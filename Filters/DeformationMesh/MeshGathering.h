@@ -31,9 +31,9 @@ public:
   /// rest and the same displacement. Throws the same Error on all ranks. Collective.
   DeformationSource Gather(const Ranks& ranks, const DeformationSource& source, bool joins);
 
-  /// Describes the cells of this rank's piece that were ignored; "": none were.
+  /// Describes the ignored cells of the first piece that has some; "": there are none.
   const std::string& GetIgnoredCells() const { return this->IgnoredCells; }
-  /// See RestMesh::GetWrongOrder().
+  /// See RestMesh::GetWrongOrder(): of the first piece that has such cells.
   const std::string& GetWrongOrder() const { return this->WrongOrder; }
 
 private:

@@ -427,6 +427,25 @@ void TestNothingCovered(const Case& from)
   EXPECT_EQ(parallel.TakeWarning(), "");
 }
 
+/// Tests a cell that is ignored on the last rank: all ranks warn, because programs such as ParaView
+/// show the warnings of the first rank only.
+void TestIgnoredCell(const Case& from)
+{
+  const auto piece =
+    Distribute(vtkUnstructuredGrid::SafeDownCast(from.Deformation), Spread::Pieces);
+  piece->GetCellData()->Initialize();
+  if (GetRank() + 1 == GetRanks())
+  {
+    const vtkIdType triangle[3] = { 0, 1, 2 };
+    piece->InsertNextCell(VTK_TRIANGLE, 3, triangle);
+  }
+  Parallel parallel(from);
+  parallel.Filter->SetDeformationData(piece);
+  parallel.Filter->UpdatePiece(GetRank(), GetRanks(), 0);
+  EXPECT_TRUE(HasPart(parallel.Observer->GetWarningMessage(), "1 triangle"));
+  EXPECT_EQ(parallel.TakeErrors(), 0);
+}
+
 void TestErrors(const Case& from, vtkImageData* whole)
 {
   const auto mesh = vtkUnstructuredGrid::SafeDownCast(from.Deformation);
@@ -740,6 +759,7 @@ void TestAll()
       Check(noParts, whole, "Source without parts");
       TestSpread(from, whole);
       TestErrors(from, whole);
+      TestIgnoredCell(from);
       if (GetRanks() > 1)
       {
         TestSettings(from, whole);
