@@ -235,7 +235,7 @@ public:
    * Get results of the last execution: the largest violation of a limit by a voxel that moved, as a
    * fraction of the spacing, which is 0 if the filter works correctly; the number of rounds over
    * active blocks and relaxation sweeps; the number of voxels that moved; and the numbers of
-   * handles that were reduced and released.
+   * handles that were reduced and released. After an error they are 0.
    */
   vtkGetMacro(LargestViolation, double);
   vtkGetMacro(NumberOfSweeps, vtkIdType);

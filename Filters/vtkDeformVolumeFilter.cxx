@@ -15,6 +15,7 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <exception>
 #include <iterator>
 #include <sstream>
 
@@ -184,9 +185,16 @@ vtkStringArray* vtkDeformVolumeFilter::GetDeviceNames()
 {
   deformvolume::Ranks().ShareProcessorsAlone();
   vtkStringArray* names = vtkStringArray::New();
-  for (const std::string& name : deformvolume::GetDeviceNames())
+  try
   {
-    names->InsertNextValue(name);
+    for (const std::string& name : deformvolume::GetDeviceNames())
+    {
+      names->InsertNextValue(name);
+    }
+  }
+  catch (const std::exception& error)
+  {
+    vtkGenericWarningMacro(<< error.what());
   }
   return names;
 }

@@ -428,7 +428,8 @@ public:
    * a device's name, without regard to case. It is an error if there is no such device. Default:
    * "". DeviceInUse is the name of the device of the last execution; "" before the first.
    * GetDeviceNames() lists the devices of this machine, the best first, in an array that belongs to
-   * the caller.
+   * the caller. In a process that was forked after the first use of a device it is empty, with a
+   * warning.
    */
   vtkSetMacro(Device, std::string);
   vtkGetMacro(Device, std::string);

@@ -318,7 +318,7 @@ public:
   double GetTime();
 
   /**
-   * Get the number of nodes that handles held in the last execution.
+   * Get the number of nodes that handles held in the last execution; 0 after an error.
    */
   vtkGetMacro(NumberOfHeldNodes, vtkIdType);
 

@@ -132,7 +132,7 @@ public:
    * Newton's method, and of iterations of conjugate gradients in all steps; the residual, which is
    * the largest component of the unbalanced force on a node, in N, and the residual as a part of
    * the largest force that is applied to a node or holds it; the strain energy, in J; the number of
-   * frozen pieces; the number of inverted tetrahedra.
+   * frozen pieces; the number of inverted tetrahedra. After an error they are false and 0.
    */
   bool GetIsConverged();
   int GetNumberOfNewtonSteps();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkLatticeTetrahedraSource.h"
 
-#include "AbortCheck.h"
 #include "Error.h"
 #include "FiveTetrahedra.h"
+#include "IsAborted.h"
 #include "PieceRequest.h"
 
 #include "vtkCellArray.h"

@@ -99,7 +99,7 @@ public:
   ///@{
   /**
    * Get results of the last frame: the number of steps, the length of a step in s, and the number
-   * of inverted tetrahedra at its end.
+   * of inverted tetrahedra at its end. After an error they are 0.
    */
   vtkIdType GetNumberOfSteps();
   double GetTimeStepInUse();

@@ -198,7 +198,8 @@ int vtkMaterialFromVolume::RequestData(
     return 1;
   }
   vtkUnstructuredGrid::GetData(output)->Initialize();
-  return deformvolume::GetResultOfError(output); // a rank may have no cells, and no error
+  // A rank without cells may have no error, but all ranks must have the same result.
+  return deformvolume::GetResultOfError(output);
 }
 
 void vtkMaterialFromVolume::Execute(

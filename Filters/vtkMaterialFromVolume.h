@@ -148,7 +148,7 @@ public:
   /**
    * Get the number of tetrahedra of the last execution that contain no voxel and have the material
    * of the nearest one, and the number of tetrahedra with the default material: those outside the
-   * volume, and those whose nearest voxel is ignored.
+   * volume, and those whose nearest voxel is ignored. After an error they are 0.
    */
   vtkGetMacro(NumberOfTetrahedraWithoutVoxels, vtkIdType);
   vtkGetMacro(NumberOfTetrahedraOutside, vtkIdType);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkTetGenMesher.h"
 
-#include "AbortCheck.h"
 #include "ClosedSurface.h"
+#include "IsAborted.h"
 #include "MeshRefinement.h"
 #include "PieceRequest.h"
 #include "TetGenProcess.h"

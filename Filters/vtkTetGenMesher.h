@@ -26,9 +26,9 @@
  * @par Port 0, one of:
  * - vtkImageData, the volume, with at least two voxels on each axis; origin, spacing, direction
  *   matrix and an extent that does not start at 0 are taken into account. SetInputArrayToProcess(0,
- *   0, 0, POINTS, name) chooses the array, by default the active scalars; of several components the
- *   first is used. Hidden points are outside the body. If the volume's border cuts
- *   off the body, the surface is closed there.
+ *   0, 0, POINTS, name) chooses the array, by default, and with an empty name, the active scalars;
+ * of several components the first is used. Hidden points are outside the body. If the volume's
+ * border cuts off the body, the surface is closed there.
  * - vtkPolyData, a closed surface without self-intersections. Coincident points are merged and
  *   polygons split into triangles. Shells inside others are kept as surfaces, and their insides
  *   are filled too.

@@ -62,10 +62,11 @@ glm::dvec3 GetPosition(const SessionEvent& event, std::size_t first)
   return { event.Numbers[first], event.Numbers[first + 1], event.Numbers[first + 2] };
 }
 
-// Filters refuse positions that are farther away. False for not-a-number, too.
-bool IsWithinReach(vtkImageData* volume, const glm::dvec3& position)
+// Whether a position is at most 2^31 voxels away from index 0, the limit of vtkCutVolume. False for
+// not-a-number, too.
+bool HasPossibleIndex(vtkImageData* volume, const glm::dvec3& position)
 {
-  constexpr double farthest = 2147483648.0; // voxels
+  constexpr double farthest = 2147483648.0;
   glm::dvec3 index;
   volume->TransformPhysicalPointToContinuousIndex(&position.x, &index.x);
   index = glm::abs(index);
@@ -285,7 +286,7 @@ glm::dvec3 SessionPipeline::FindRestPosition(const glm::dvec3& deformed, const S
   {
     return found;
   }
-  glm::dvec3 shown; // at the voxel, so that `found` is more accurate if it is on this side
+  glm::dvec3 shown; // of the voxel; if `found` lies on the same side, it is more accurate
   output->GetPointData()->GetArray("RestPosition")->GetTuple(voxel, &shown.x);
   return glm::distance(found, shown) <= GetLargestVoxelSize(this->Volume) ? found : shown;
 }
@@ -316,9 +317,10 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   Action drag;
   drag.Handle = handle;
   drag.IsGrabbed = drag.IsHeld = true;
-  const bool isWithinReach = IsWithinReach(this->Volume, position);
-  drag.Rest = isWithinReach ? this->FindRestPosition(position, {}) : position;
-  if (!isWithinReach || !MoveIntoVolume(this->Volume, drag.Rest))
+  const bool isPossible = HasPossibleIndex(this->Volume, position);
+  // Not the sampling of the caller: a replay must find the same position.
+  drag.Rest = isPossible ? this->FindRestPosition(position, {}) : position;
+  if (!isPossible || !MoveIntoVolume(this->Volume, drag.Rest))
   {
     throw std::runtime_error("The grabbed position " + Format(&position.x) +
       " is outside the deformed volume. Grab a position within it.");
@@ -391,7 +393,7 @@ void SessionPipeline::Cut(const SessionEvent& event)
   {
     glm::dvec3 point;
     sheet->GetPoint(id, &point.x);
-    if (!IsWithinReach(this->Volume, point)) // before the subdivision, which would not end
+    if (!HasPossibleIndex(this->Volume, point)) // before the subdivision, which would not end
     {
       throw std::runtime_error("Point " + std::to_string(id) +
         " of the sheet is more than 2^31 voxels away from index 0 of the volume. Correct the "

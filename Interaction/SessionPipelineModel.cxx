@@ -383,7 +383,7 @@ void SessionPipeline::UpdateModel(const Actions& held)
 // recover from such displacements either, so that the body must be rebuilt.
 void SessionPipeline::CheckDisplacements()
 {
-  constexpr double largest = 16383.0; // voxels
+  constexpr double largest = 16383.0; // voxels; the limit of vtkDeformVolumeFilter
   vtkDataArray* vectors = this->GetDeformation()->GetPointData()->GetVectors();
   for (vtkIdType id = 0; id < vectors->GetNumberOfTuples(); ++id)
   {
@@ -510,7 +510,15 @@ vtkImageData* SessionPipeline::ResampleForSearch(const Sampling& sampling)
 
 bool SessionPipeline::MayOverlap() const
 {
-  return this->Model != Session::NONE && !this->Volume->GetPointData()->HasArray("RestPosition") &&
+  // The filter cannot make rest positions of a volume with such arrays.
+  for (const char* name : { "RestPosition", "RestPosition x", "RestPosition y", "RestPosition z" })
+  {
+    if (this->Volume->GetPointData()->HasArray(name))
+    {
+      return false;
+    }
+  }
+  return this->Model != Session::NONE &&
     std::any_of(this->Done.begin(), this->Done.end(),
       [](const Action& action) { return action.Kind == Action::CUT; });
 }

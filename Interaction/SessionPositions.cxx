@@ -214,25 +214,30 @@ namespace deformvolume
 PositionSearch::PositionSearch()
 {
   vtkNew<vtkCallbackCommand> nothing; // without it, points outside are a warning
-  this->Filter->AddObserver(vtkCommand::WarningEvent, nothing);
-  this->Filter->AddObserver(vtkCommand::ErrorEvent, nothing);
-  this->Filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, nothing);
-  this->Filter->SetOutsideModeToExtrapolate();
+  for (int isToRest = 0; isToRest < 2; ++isToRest)
+  {
+    vtkDeformGeometryFilter* filter = this->Filters[isToRest];
+    filter->AddObserver(vtkCommand::WarningEvent, nothing);
+    filter->AddObserver(vtkCommand::ErrorEvent, nothing);
+    filter->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, nothing);
+    filter->SetOutsideModeToExtrapolate();
+    filter->SetInverse(isToRest != 0);
+  }
 }
 
 PositionSearch::~PositionSearch() = default;
 
 void PositionSearch::MoveWithMesh(vtkPolyData* sheet, vtkDataSet* mesh, bool isToRest)
 {
-  this->Filter->SetInputData(sheet);
-  this->Filter->SetDeformationData(mesh);
-  this->Filter->SetInverse(isToRest);
-  if (this->Filter->GetExecutive()->Update(0) == 0)
+  vtkDeformGeometryFilter* filter = this->Filters[isToRest ? 1 : 0];
+  filter->SetInputData(sheet);
+  filter->SetDeformationData(mesh);
+  if (filter->GetExecutive()->Update(0) == 0)
   {
     throw std::runtime_error("The deformation mesh cannot move positions. Check that its "
                              "displacements are finite.");
   }
-  auto* moved = vtkPolyData::SafeDownCast(this->Filter->GetOutput());
+  auto* moved = vtkPolyData::SafeDownCast(filter->GetOutput());
   vtkPoints* points = sheet->GetPoints();
   vtkDataArray* isMoved = moved->GetPointData()->GetArray("vtkValidPointMask");
   for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)

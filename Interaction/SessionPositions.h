@@ -39,7 +39,7 @@ private:
   void MoveWithMesh(vtkPolyData* sheet, vtkDataSet* mesh, bool isToRest);
   glm::dvec3 MoveWithMesh(const glm::dvec3& position, vtkDataSet* mesh, bool isToRest);
 
-  vtkNew<vtkDeformGeometryFilter> Filter;
+  vtkNew<vtkDeformGeometryFilter> Filters[2]; // from rest, and to rest
 };
 
 } // namespace deformvolume

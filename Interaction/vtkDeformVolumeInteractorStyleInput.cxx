@@ -241,7 +241,8 @@ void vtkDeformVolumeInteractorStyle::OnChar()
     this->ReleaseAt(x, y);
     return;
   }
-  internals.CancelPress(); // a model that is in use or fails does not end the drag
+  // The session does not end the grab if the model is in use already or cannot be changed.
+  internals.CancelPress();
   if (model >= 0)
   {
     internals.Session->ChangeModel(model);

@@ -113,10 +113,12 @@ void vtkDeformVolumeSession::vtkInternals::ProcessAndRecord(
     if (event.Kind == SessionEvent::STEP)
     {
       ++this->Steps;
-      // After a failure the next step finds out whether the body still moves, unless it fails, too.
-      this->IsMoving = !std::exchange(this->HasFailed, true);
+      // After a failure the simulation continues, because the body may still move. After a second
+      // one without an event in between it stops.
+      const bool hadFailed = std::exchange(this->HasFailed, true);
+      this->IsMoving = !hadFailed;
       this->IsMoving = this->Pipeline.Step();
-      this->HasFailed = false;
+      this->HasFailed = hadFailed;
     }
     else
     {

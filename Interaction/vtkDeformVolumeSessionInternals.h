@@ -40,7 +40,7 @@ public:
   deformvolume::SessionPipeline Pipeline;
   deformvolume::SessionEvents Record;
   bool IsMoving = false;
-  bool HasFailed = false; // whether the last step has failed, with no event since then
+  bool HasFailed = false; // whether a step has failed since the last event
   std::string InputHash;  // "": not computed yet
   vtkIdType Steps = 0;
 

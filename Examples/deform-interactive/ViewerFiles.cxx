@@ -220,7 +220,7 @@ void Viewer::Replay(const std::string& path)
   {
     throw Failure("cannot replay " + path + ": there is no such file");
   }
-  if (this->Recorder) // it may append to this file, so that the replay would not end
+  if (this->Recorder) // it may be writing this file: the replay would never end
   {
     this->ToggleRecording();
   }

@@ -70,8 +70,9 @@ void CheckOutputs(const Options& options)
       HasSuffix(path, { ".nii", ".vti", ".vtu", ".vtp" }))
     {
       throw Failure("cannot write " + path +
-        ": the writer of this format does not write into pipes. Give another name, or write "
-        ".nii.gz, .mha or .nrrd");
+        ": the writer of this format does not write into pipes. Give the name of a file, or "
+        "another "
+        "format");
     }
     const std::string& existing = vtksys::SystemTools::FileExists(path) ? path : folder;
     if (access(existing.c_str(), W_OK) != 0)
@@ -104,7 +105,7 @@ double FindBackground(const Options& options, vtkImageData* volume)
 // Checks the names of arrays before the long computations begin.
 void CheckArrays(const Options& options, vtkPointData* arrays)
 {
-  const auto find = [arrays](const char* option, const std::string& name)
+  const auto require = [arrays](const char* option, const std::string& name)
   {
     if (arrays->GetArray(name.c_str()))
     {
@@ -131,11 +132,11 @@ void CheckArrays(const Options& options, vtkPointData* arrays)
   };
   for (const std::string& name : options.CategoricalArrays)
   {
-    find("--categorical", name);
+    require("--categorical", name);
   }
   for (const std::string& name : options.DensityArrays)
   {
-    find("--density-array", name);
+    require("--density-array", name);
     refuse("--density-array", "Jacobian");
   }
   if (!options.Jacobians.empty())
@@ -446,7 +447,7 @@ void DeformVolume(const Options& options, Messages& messages)
     }
   }
   WriteMaps(options, result, messages);
-  if (!options.Background)
+  if (!options.Background && !options.Outputs.empty() && filter->GetBackgroundValue() != 0.0)
   {
     result.Image = ClearOutside(result.Image);
   }

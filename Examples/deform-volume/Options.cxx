@@ -412,8 +412,8 @@ void AddResampling(CLI::App& program, Options& options)
     ->check(CLI::Range(0, 1000));
   group.Add("--background", options.Background, "NUMBER",
     "Value of voxels outside the deformed volume, in all arrays but those of --density-array, "
-    "which are 0 there [of the scalars 0 if they are labels or if their type has no negative "
-    "values, otherwise their minimum, such as air in CT; of other arrays 0]");
+    "which are 0 there [scalars: their minimum, such as air in CT; 0 if they are labels, have "
+    "several components, or have a type without negative values; other arrays: 0]");
   group.AddList("--categorical", options.CategoricalArrays, "NAME",
     "Name of an array of labels, which is not interpolated. May be given several times");
   group.AddFlag("--labels", options.Labels, "All arrays hold labels");

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeformVolumeFilterInternals.h"
 
-#include "AbortCheck.h"
 #include "FieldFolds.h"
 #include "FieldGeometry.h"
 #include "InputUpdate.h"
+#include "IsAborted.h"
 #include "MaskArray.h"
 #include "MemoryError.h"
 #include "OutputExtent.h"

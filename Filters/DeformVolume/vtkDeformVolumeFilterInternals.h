@@ -176,8 +176,8 @@ public:
     vtkInformation* volumeInfo, vtkInformation* output, deformvolume::DeformRequest& request);
   Results Resample(const Inputs& inputs, deformvolume::DeformRequest& request, vtkImageData* image);
   ///@}
-  /// Frees the memory of other states if the memory does not suffice to resample into an extent.
-  /// Throws an Error if it does not suffice then. Outputs of State must be prepared.
+  /// If the memory does not suffice to resample into an extent, frees that of other states. Throws
+  /// an Error if it still does not suffice. Call Outputs.Prepare() of State first.
   void CheckMemory(
     const Inputs& inputs, const deformvolume::Extent& output, deformvolume::Resampling method);
 

@@ -27,7 +27,8 @@ public:
   /// Drops kept arrays that cannot be used again for arrays like the sources with this number of
   /// tuples. The output must not hold the arrays when this is called.
   void Prepare(const std::vector<SourceArray>& sources, vtkIdType numberOfTuples);
-  /// Returns the size of the other kept arrays in bytes, after Prepare().
+  /// Returns the size in bytes of the kept arrays that the next output uses again. Call it after
+  /// Prepare().
   std::uint64_t GetReusableBytes();
 
   /// Makes an array like each of the sources, and vtkValidPointMask. Sets the memory of these
@@ -71,7 +72,8 @@ private:
 
   vtkIdType NumberOfTuples = 0;
   std::vector<KeptArray> Last;
-  std::vector<KeptArray> BeforeLast; // of the execution before, used if Last is held by others
+  std::vector<KeptArray>
+    BeforeLast; // of the execution before the last one, used if others hold Last
   std::vector<vtkSmartPointer<vtkDataArray>> Made;
 };
 

@@ -3,6 +3,7 @@
 
 #include <new>
 #include <sstream>
+#include <utility>
 
 namespace deformvolume
 {
@@ -18,7 +19,7 @@ void FiniteElementSimulation::SetBody(
     return;
   }
   this->Model.SetBody(body, progress);
-  this->Report = EquilibriumReport();
+  this->Report = this->Last = EquilibriumReport();
   this->HasWarnedOfResidual = false;
 }
 
@@ -48,10 +49,9 @@ void FiniteElementSimulation::Advance(const Frame& frame)
   request.Loads = frame.Loads;
   request.Mode = this->Mode;
   request.Progress = [&] { return frame.Progress(someProgress); };
-  const EquilibriumReport last = this->Report;
   this->Model.SetMaterialModel(this->Material);
   this->Report = this->Model.Solve(request);
-  this->Warn(last);
+  this->Warn(std::exchange(this->Last, this->Report));
 }
 
 void FiniteElementSimulation::Warn(const EquilibriumReport& last)

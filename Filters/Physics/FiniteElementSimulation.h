@@ -40,6 +40,7 @@ private:
   void Warn(const EquilibriumReport& last);
 
   FiniteElementModel Model;
+  EquilibriumReport Last; // the last report, also after an error: warnings are given once
   bool HasWarnedOfResidual = false;
   vtkSmartPointer<vtkFloatArray> Output;
 };

@@ -2,6 +2,7 @@
 #include "MassSpringSimulation.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace deformvolume
 {
@@ -58,6 +59,7 @@ void MassSpringSimulation::SetBody(
   this->Factor = 0.0;
   this->Model.SetBody(body, progress);
   this->Report = keepsState ? this->Report : MassSpringReport();
+  this->HasInverted = keepsState && this->HasInverted;
   const auto ratios = std::count_if(body.Materials.begin(), body.Materials.end(),
     [](const ElasticMaterial& material)
     { return material.PoissonRatio < MassSpringModel::LeastPoissonRatio; });
@@ -107,9 +109,10 @@ void MassSpringSimulation::Advance(const Frame& frame)
   request.Held = frame.Held;
   request.Loads = frame.Loads;
   request.Progress = frame.Progress;
-  const std::int64_t before = this->Report.NumberOfInvertedTetrahedra;
   this->Report = this->Model.Advance(request);
-  if (before == 0 && this->Report.NumberOfInvertedTetrahedra > 0)
+  const bool hadInverted =
+    std::exchange(this->HasInverted, this->Report.NumberOfInvertedTetrahedra > 0);
+  if (!hadInverted && this->HasInverted)
   {
     this->Warnings.push_back(std::to_string(this->Report.NumberOfInvertedTetrahedra) +
       " tetrahedra are inverted (inside out), and springs can keep them inverted. Reset the body, "

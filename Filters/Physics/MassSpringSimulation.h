@@ -42,6 +42,7 @@ public:
 
 private:
   MassSpringModel Model;
+  bool HasInverted = false; // whether the last frame had inverted tetrahedra
   std::string Device;
   std::size_t NumberOfNodes = 0;
   VectorOutput Output;

@@ -2,7 +2,7 @@
 #ifndef DeformVolumeProgressReport_h
 #define DeformVolumeProgressReport_h
 
-#include "AbortCheck.h"
+#include "IsAborted.h"
 
 #include "vtkAlgorithm.h"
 

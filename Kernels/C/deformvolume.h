@@ -13,7 +13,8 @@
  * once for the same object (deformer, ChainMail). Threads need a stack of 128 KiB.
  *
  * Processes. OpenCL does not work in a process that was forked after the first use of a device:
- * calls may wait forever there. Start another program instead, or fork before.
+ * calls that choose a device are errors there, and others may wait forever. Start another program
+ * instead, or fork before.
  *
  * Memory. Outputs must not overlap each other, nor data that are borrowed.
  */

@@ -4,8 +4,8 @@
 #include "Error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <cstring>
 
 namespace deformvolume
 {
@@ -119,9 +119,9 @@ bool DeviceArrays::SetOptions(const std::vector<VolumeArray>& arrays)
   for (std::size_t i = 0; i < arrays.size(); ++i)
   {
     VolumeArray& set = this->Described[i];
-    // Compared as bytes, because NaN is not equal to itself.
+    const bool areNaN = std::isnan(set.Background) && std::isnan(arrays[i].Background);
     changed = changed || set.Categorical != arrays[i].Categorical ||
-      std::memcmp(&set.Background, &arrays[i].Background, sizeof(set.Background)) != 0;
+      !(set.Background == arrays[i].Background || areNaN);
     set.Categorical = arrays[i].Categorical;
     set.Background = arrays[i].Background;
   }

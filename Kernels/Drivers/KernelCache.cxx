@@ -110,10 +110,14 @@ void Prepare()
     LockedFile = directory + lockedFile;
     return;
   }
-  const std::string parent = GetEnvironment("TMPDIR").empty() ? "/tmp" : GetEnvironment("TMPDIR");
+  const std::string temporary = GetEnvironment("TMPDIR");
+  const std::string parent =
+    temporary.empty() ? "/tmp" : std::filesystem::absolute(temporary).string();
   TemporaryDirectory = MakeTemporaryDirectory(parent);
   if (TemporaryDirectory.empty() || !IsUsable(TemporaryDirectory))
   {
+    std::error_code error;
+    std::filesystem::remove(TemporaryDirectory, error);
     Problem = "The kernels cannot be compiled: neither the kernel cache \"" + directory +
       "\" nor \"" + parent +
       "\" is a directory that can be written to and executed from, with 16 MiB of free space. Set "

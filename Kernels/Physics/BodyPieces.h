@@ -36,7 +36,8 @@ struct BodyPieces
   /// The number of pieces.
   std::int32_t NumberOfPieces = 0;
 };
-/// Finds the pieces of a body. abortCheck: checks for an abort; null outside the engine.
+/// Finds the pieces of a body. abortCheck: checks for an abort. Callers outside
+/// the engine pass null.
 DEFORMVOLUME_EXPORT BodyPieces FindPieces(
   const ElasticBody& body, AbortCheck* abortCheck = nullptr);
 

@@ -134,7 +134,7 @@ DEFORMVOLUME_EXPORT bool IsFlat(const std::array<glm::dvec3, 4>& points);
 /// array of the wrong length. Also throws if mid-side nodes are so far from the middle of their
 /// edges that a ten-node tetrahedron overlaps itself, or that one of the linear tetrahedra into
 /// which it is split is inverted (QuadraticTetrahedron::IsSplitInverted). abortCheck: checks for an
-/// abort; null outside the engine.
+/// abort. Callers outside the engine pass null.
 DEFORMVOLUME_EXPORT void CheckBody(const ElasticBody& body, AbortCheck* abortCheck = nullptr);
 
 /// The nodes of a tetrahedron for messages, such as "3, 4, 5 and 9". They are numbered as the

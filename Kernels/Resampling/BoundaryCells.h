@@ -16,8 +16,8 @@ namespace deformvolume
 class DeviceVolume;
 class DisplacementSource;
 class Launches;
-class OutputSlab;
 class MemoryBudget;
+class OutputSlab;
 class WorkDevice;
 
 /// Resamples the cells of the sampling mesh that the boundary of the deformation mesh crosses. It

@@ -84,8 +84,8 @@ ResamplingForm ExactPasses::ChooseForm(
   if ((method == Resampling::ExactByLanes || method == Resampling::ExactByColumns) && !fits)
   {
     throw Error(
-      "The resampling by lanes or columns takes only outputs of at most 32,768 voxels on an axis "
-      "that begin within 2^22 voxels of index 0.");
+      "The resampling by lanes or columns takes only outputs that have at most 32,768 voxels on "
+      "each axis and begin within 2^22 voxels of index 0.");
   }
   if (method == Resampling::ExactByLanes && !hasVectors)
   {

@@ -116,7 +116,7 @@ void RegisterComparison(const EvaluationSize& size)
     {
       contestants.push_back(MakePeerContestant(named.first, "2197/exact", pose, size.GetWarmUp()));
     }
-    // Contestants whose ratios have limits are measured one after the other, because the speed of
+    // Contestants that the report compares are measured one after the other, because the speed of
     // the machine changes least within a short time.
     std::stable_partition(contestants.begin(), contestants.end(),
       [](const Contestant<ComparisonStage>& contestant)

@@ -162,7 +162,6 @@ void LiveCase::Split(int tetrahedra, int nodes)
       if (isChanged)
       {
         connectivity->ReplaceCellAtId(cell, 4, changed.data());
-        this->Log(connectivity->GetConnectivityArray(), 4 * cell, 4 * cell + 3);
         --tetrahedra;
       }
     }

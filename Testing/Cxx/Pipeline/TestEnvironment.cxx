@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The filter in an environment without driver, home directory, cache or linker: it reports one
-// error that says what to do, or works without them. The environment cannot change within a
-// process, so CTest runs each test in a process of its own.
+// The filter in an environment without driver, home directory, cache or linker, with a cache that
+// is removed, and in a forked process: it reports one error that says what to do, or works. The
+// environment cannot change within a process, so CTest runs each test in a process of its own.
 #include "FilterTesting.h"
 
 #include <vtkStringArray.h>
@@ -111,6 +111,9 @@ TEST_F(Environment, Fork)
   {
     alarm(60); // ends the child if it hangs
     this->Fails("forked");
+    const auto names =
+      vtkSmartPointer<vtkStringArray>::Take(vtkDeformVolumeFilter::GetDeviceNames());
+    EXPECT_EQ(names->GetNumberOfValues(), 0);
     _exit(testing::Test::HasFailure() ? 1 : 0);
   }
   int status = -1;

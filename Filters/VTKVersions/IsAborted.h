@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeAbortCheck_h
-#define DeformVolumeAbortCheck_h
+#ifndef DeformVolumeIsAborted_h
+#define DeformVolumeIsAborted_h
 
 #include "vtkAlgorithm.h"
 
