@@ -70,9 +70,7 @@ void CheckOutputs(const Options& options)
       HasSuffix(path, { ".nii", ".vti", ".vtu", ".vtp" }))
     {
       throw Failure("cannot write " + path +
-        ": the writer of this format does not write into pipes. Give the name of a file, or "
-        "another "
-        "format");
+        ": the writer of this format does not write into pipes. Give another name or format");
     }
     const std::string& existing = vtksys::SystemTools::FileExists(path) ? path : folder;
     if (access(existing.c_str(), W_OK) != 0)

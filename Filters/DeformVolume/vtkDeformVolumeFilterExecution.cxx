@@ -23,22 +23,11 @@
 
 using deformvolume::Extent;
 
-namespace
-{
-
-Extent GetWholeExtent(vtkInformation* output)
-{
-  Extent whole;
-  output->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), whole.data());
-  return whole;
-}
-
-} // namespace
-
 //------------------------------------------------------------------------------
 int vtkDeformVolumeFilter::RequestData(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector* output)
 {
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
   vtkInformation* outInfo = output->GetInformationObject(0);
   vtkImageData* image = vtkImageData::GetData(outInfo);
   // If this execution fails, no results of an earlier one may remain.
@@ -54,8 +43,8 @@ int vtkDeformVolumeFilter::RequestData(
   const vtkInternals::Inputs inputs = this->Internals->ReadInputs(ranks, input, outInfo);
 
   deformvolume::DeformRequest request;
-  outInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), request.OutputExtent.data());
-  request.WholeOutputExtent = GetWholeExtent(outInfo);
+  outInfo->Get(Pipeline::UPDATE_EXTENT(), request.OutputExtent.data());
+  outInfo->Get(Pipeline::WHOLE_EXTENT(), request.WholeOutputExtent.data());
   const vtkIdType numberOfPoints = deformvolume::GetNumberOfPoints(request.OutputExtent);
   if (numberOfPoints == 0 && !ranks.AreMany())
   {

@@ -6,10 +6,6 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
-#if __has_include("vtkConstantArray.h")
-#include "vtkConstantArray.h"
-#endif
-
 namespace deformvolume
 {
 
@@ -33,19 +29,6 @@ vtkDataArray* GetCellTypes(Grid* grid, long)
 inline vtkDataArray* GetCellTypes(vtkUnstructuredGrid* grid)
 {
   return detail::GetCellTypes(grid, 0);
-}
-
-/// The type of all cells of a grid if it is stored once for all cells, which is possible since VTK
-/// 9.6; else -1.
-inline int GetCommonCellType(vtkUnstructuredGrid* grid)
-{
-#if __has_include("vtkConstantArray.h")
-  auto* constant = vtkArrayDownCast<vtkConstantArray<unsigned char>>(GetCellTypes(grid));
-  return constant && constant->GetNumberOfValues() > 0 ? constant->GetValue(0) : -1;
-#else
-  static_cast<void>(grid);
-  return -1;
-#endif
 }
 
 } // namespace deformvolume

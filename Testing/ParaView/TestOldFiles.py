@@ -26,14 +26,18 @@ REMOVED = {"NumberOfTimeSamples": 11, "StreamInput": 0, "WorkGroupSize": 0}
 WARNINGS = [f"{name} was removed" for name in REMOVED]
 
 
+def delete_sources():
+    for source in reversed(list(simple.GetSources().values())):
+        simple.Delete(source)
+
+
 def run_script(path):
     with open(path, encoding="utf-8") as file:
         exec(compile(file.read(), path, "exec"), {"__name__": "__main__"})
 
 
 def check_file(load, path, expected):
-    for source in reversed(list(simple.GetSources().values())):
-        simple.Delete(source)
+    delete_sources()
     with messages() as texts:
         load(path)
     for words in expected:
@@ -60,11 +64,29 @@ def check_file(load, path, expected):
     return loaded
 
 
+def load_as_before(name, now, before):
+    """Saves a state, replaces the only text `now` by what an older version wrote, and loads the state. Returns the
+    source of this name after an update without messages."""
+    path = os.path.join(OUTPUT, f"TestOldFiles{name}.pvsm")
+    simple.SaveState(path)
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    check(text.count(now) == 1, f"The state does not have {now} once")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text.replace(now, before))
+    delete_sources()
+    with messages() as texts:
+        simple.LoadState(path)
+        loaded = simple.FindSource(name)
+        loaded.UpdatePipeline()
+    check_silent(texts)
+    return loaded
+
+
 def check_edits(path):
     """Tests a state with a volume that is cut by a sheet, and carved by a body, a surface and a label, each by its own
     filter."""
-    for source in reversed(list(simple.GetSources().values())):
-        simple.Delete(source)
+    delete_sources()
     with messages() as texts:
         simple.LoadState(path)
         image = fetch(simple.FindSource("CarveLabel"))
@@ -81,27 +103,13 @@ def check_edits(path):
 
 def check_elements():
     """Tests a state and a script with the former name of Finite Element Deformation."""
-    for source in reversed(list(simple.GetSources().values())):
-        simple.Delete(source)
+    delete_sources()
     lattice = simple.TetrahedralLattice(NumberOfNodes=[3, 3, 3])
     handle = simple.DeformationHandle(RestPosition=[1, 1, 1], Position=[1, 1, 2])
     simple.FiniteElementDeformation(
         registrationName="Elements", RestMesh=lattice, Handles=handle, HandleRadius=10, YoungModulus=5000
     )
-    path = os.path.join(OUTPUT, "TestOldFilesElements.pvsm")
-    simple.SaveState(path)
-    with open(path, encoding="utf-8") as file:
-        text = file.read()
-    check(text.count('type="FiniteElementDeformation"') == 1, "The state does not have one FiniteElementDeformation")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(text.replace('type="FiniteElementDeformation"', 'type="CorotationalDeformation"'))
-    for source in reversed(list(simple.GetSources().values())):
-        simple.Delete(source)
-    with messages() as texts:
-        simple.LoadState(path)
-        loaded = simple.FindSource("Elements")
-        loaded.UpdatePipeline()
-    check_silent(texts)
+    loaded = load_as_before("Elements", 'type="FiniteElementDeformation"', 'type="CorotationalDeformation"')
     check(loaded.SMProxy.GetXMLName() == "CorotationalDeformation", loaded.SMProxy.GetXMLName())
     check(loaded.YoungModulus == 5000, f"the Young modulus is {loaded.YoungModulus}")
     check(loaded.HeldNodes >= 27, f"{loaded.HeldNodes} nodes are held")
@@ -111,27 +119,13 @@ def check_elements():
 
 def check_plane():
     """Tests a state in which Cut Volume With Plane has the plane of ParaView."""
-    for source in reversed(list(simple.GetSources().values())):
-        simple.Delete(source)
+    delete_sources()
     volume = wavelet()
     volume.UpdatePipeline()
     cut = simple.CutVolumeWithPlane(registrationName="Cut", Volume=volume)
     cut.Plane.Center, cut.Plane.Resolution = [0, 0, 2.5], 50
-    path = os.path.join(OUTPUT, "TestOldFilesPlane.pvsm")
-    simple.SaveState(path)
-    with open(path, encoding="utf-8") as file:
-        text = file.read()
-    now = 'group="internal_sheets" type="CuttingPlane"'
-    check(text.count(now) == 1, "The state does not have one CuttingPlane")
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(text.replace(now, 'group="extended_sources" type="BoundedPlaneSource"'))
-    for source in reversed(list(simple.GetSources().values())):
-        simple.Delete(source)
-    with messages() as texts:
-        simple.LoadState(path)
-        loaded = simple.FindSource("Cut")
-        loaded.UpdatePipeline()
-    check_silent(texts)
+    loaded = load_as_before("Cut", 'group="internal_sheets" type="CuttingPlane"',
+                            'group="extended_sources" type="BoundedPlaneSource"')
     plane = loaded.Plane
     check([*plane.Center, plane.Resolution] == [0, 0, 2.5, 50], f"the plane has {plane.Center}, {plane.Resolution}")
     check(loaded.SwitchedOffTetrahedra == 5 * 20 * 20, f"{loaded.SwitchedOffTetrahedra} tetrahedra are off")
