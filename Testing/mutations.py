@@ -158,7 +158,7 @@ MUTATIONS = {
     "null-group": ("Kernels/Output/OutputFilling.cxx",
                    "kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group));",
                    "kernel, cl::NDRange(items), cl::NullRange);", [GRAPHICS]),
-    "far-vertices": ("Kernels/Resampling/PacketCandidates.cl", "TO_INTS(Least((high) + toEnd, (float)(size)))",
+    "far-vertices": ("Kernels/Resampling/PacketCandidates.cl", "TO_INTS(Min((high) + toEnd, (float)(size)))",
                      "min(TO_INTS((high) + toEnd), (INTS)(size))", [("TestFolded", "*AtTheEdge*")]),
     "raster-last": ("Kernels/Rasterization/MeshRasterization.cl", "begin < listed; begin +=", "begin + DEFORMVOLUME_TILE_SHARED <= listed; begin +=",
                     [RASTER_GRAPHICS]),

@@ -10,7 +10,7 @@
 // weights, as floats. A product of two floats is rounded in the same way on every device.
 
 // Larger differences, in units, are clamped to this value: six of them times 255 fit into an int.
-#define MOST_PULL (1 << 20)
+#define MAXIMUM_PULL (1 << 20)
 
 INLINE int8 WeightsOf(__global const uchar* weights, uchar8 a, uchar8 b)
 {
@@ -80,7 +80,7 @@ __kernel void Relax(__global int* displacements, __global const uchar* flags,
         const int8 weight = axis == c ? along : across;
         sum[c] += weight;
         pull[c] += weight *
-          clamp(n.Displacements[c] - x[c], (int8)(-MOST_PULL), (int8)(MOST_PULL));
+          clamp(n.Displacements[c] - x[c], (int8)(-MAXIMUM_PULL), (int8)(MAXIMUM_PULL));
         highest[c] =
           min(highest[c], select((int8)(NO_LIMIT), n.Displacements[c] + over[c], there));
         lowest[c] =

@@ -75,7 +75,7 @@ static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
 {
   const KEY cell = ((KEY)z * (p->Size[1] - 1) + y) * (p->Size[0] - 1) + x;
   return cell | (KEY)(inverted != 0) << (sizeof(KEY) * 8 - 2) |
-    (DEFORMVOLUME_IS_CLOSED(p->Pass) ? CONTESTED : 0);
+    (DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass) ? CONTESTED : 0);
 }
 
 // A cell that writes a voxel stores its key there. If there is a key already, the lower key stays, and the voxel is

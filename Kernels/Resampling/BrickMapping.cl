@@ -12,7 +12,7 @@ typedef struct
   uint Border;  // one of the eight is not interior
   uint Special; // one has a value that IS_SPECIAL (PacketVertices.cl)
 #if HAS_CUT
-  uint Apart; // one has different positions for the two sides of a smooth cut
+  uint Split; // one has different positions for the two sides of a smooth cut
 #endif
 } RowFlags;
 
@@ -128,7 +128,7 @@ static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, i
 #if HAS_CUT
   if (!(state & DEFORMVOLUME_VERTEX_TOGETHER))
   {
-    flags->Apart |= 1u << (i >> 3);
+    flags->Split |= 1u << (i >> 3);
   }
 #endif
   LANE_ARRAYS(PUT_VALUE)
@@ -175,7 +175,7 @@ static __attribute__((always_inline)) void MapSixteen(const MappedRow* row, int 
 #if HAS_CUT
   if ((states & TOGETHER) != TOGETHER)
   {
-    flags->Apart |= FLAGS_OF_SIXTEEN << (i >> 3);
+    flags->Split |= FLAGS_OF_SIXTEEN << (i >> 3);
   }
 #endif
   LANE_ARRAYS(PUT_SIXTEEN_VALUES)
@@ -189,9 +189,9 @@ static int CountRepeated(int x, int begin, int end, int i)
   {
     return 0;
   }
-  int again = x + 16 - end;
-  again += (i - again) & 1;
-  return again > x - begin ? 0 : again;
+  int repeated = x + 16 - end;
+  repeated += (i - repeated) & 1;
+  return repeated > x - begin ? 0 : repeated;
 }
 
 // Maps the vertices of a row from x to end. i: slot of vertex x in the row.
@@ -230,9 +230,9 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
   __global const uchar* const rowState = mesh->State + row.Chunk;
   while (x < end)
   {
-    const int again = CountRepeated(x, begin, end, i);
-    const ulong states = x - again + 16 <= end ? StatesOf(rowState, x - again, rowInside, p) : 0;
-    if (((i - again) & 1) || (states & SOURCES) != SOURCES)
+    const int repeated = CountRepeated(x, begin, end, i);
+    const ulong states = x - repeated + 16 <= end ? StatesOf(rowState, x - repeated, rowInside, p) : 0;
+    if (((i - repeated) & 1) || (states & SOURCES) != SOURCES)
     {
       MapOne(&row, x, i, StateOf(mesh->State, x, y, z, p), &flags, p ARRAY_ARGUMENTS);
       ++x;
@@ -240,8 +240,8 @@ static RowFlags MapRow(const SamplingMesh* mesh, int x, int end, int i, int y, i
     }
     else
     {
-      x -= again;
-      i -= again;
+      x -= repeated;
+      i -= repeated;
       MapSixteen(&row, x, i, states, &flags, p ARRAY_ARGUMENTS);
       x += 16;
       i += 16;

@@ -19,7 +19,7 @@
 // Removes the cells of a packet that have a value that IS_SPECIAL from Fit and Some, so that ResampleCell takes them.
 // The values are tested again because a flag of a row is for eight vertices, and depends on where the mapped part of
 // the row begins and ends.
-static SELDOM void ExcludeSpecials(PacketCandidates* c)
+static COLD void ExcludeSpecials(PacketCandidates* c)
 {
   const Packet* const packet = &c->Cells;
   INTS special = 0;
@@ -31,8 +31,8 @@ static SELDOM void ExcludeSpecials(PacketCandidates* c)
   }
   LANE_ARRAYS(FIND_SPECIALS)
   const uint others = ~LaneBits(special);
-  c->Fit &= others;
-  c->Some &= others;
+  c->Simple &= others;
+  c->WithCandidates &= others;
 }
 
 // Resamples a packet of a row, of which the cells from beginX to endX are wanted. special: whether vertices of the
@@ -51,22 +51,22 @@ static __attribute__((always_inline)) void ResampleCells(PacketCandidates* c, in
   }
   UndecidedSamples undecidedSamples;
   const Outcome outcome = ResampleByFloats(c, mesh, output, found, &undecidedSamples, p ARRAY_ARGUMENTS);
-  uint again = outcome.NeedsInt64;
+  uint needsInt64 = outcome.NeedsInt64;
   if (outcome.SamplesNeedInt64)
   {
     ResampleUndecided(c, &undecidedSamples, outcome.SamplesNeedInt64, beginX, endX, mesh, output, p ARRAY_ARGUMENTS);
   }
   if (outcome.NeedsInt32)
   {
-    again |= ResampleByIntegers(c, outcome.NeedsInt32, mesh, output, found, p ARRAY_ARGUMENTS);
+    needsInt64 |= ResampleByIntegers(c, outcome.NeedsInt32, mesh, output, found, p ARRAY_ARGUMENTS);
   }
-  if (again)
+  if (needsInt64)
   {
-    // The cells in `again` write all of their samples once more, which must come after the samples found before.
+    // The cells in needsInt64 write all of their samples again, which must come after the samples found before.
     StoreFound(found, &c->Cells, output, p ARRAY_ARGUMENTS);
   }
   const Candidates all = AllCandidates(p);
-  FOR_EACH_LANE(lane, again)
+  FOR_EACH_LANE(lane, needsInt64)
   {
     const int cell = c->Cells.X + 2 * lane;
     if (cell >= beginX && cell < endX)
@@ -161,7 +161,7 @@ typedef struct
   RowFlags (*Flags)[ROWS];  // of the rows of these planes
 } BrickMemory;
 
-// Prepares a brick: sets the rest positions that depend on x, and marks all slots as NOT_THERE. x: index of the brick's
+// Prepares a brick: sets the rest positions that depend on x, and marks all slots as NO_VERTEX. x: index of the brick's
 // first cell.
 static void ClearBrick(
   const SamplingMesh* mesh, int x, const BrickMemory* memory, const KernelParameters* p)
@@ -186,8 +186,8 @@ static void ClearBrick(
   {
     for (int i = 0; i < HALF_ROW; ++i)
     {
-      memory->Planes[row * ROW + i] = NOT_THERE;
-      memory->Planes[row * ROW + ODD + i] = NOT_THERE;
+      memory->Planes[row * ROW + i] = NO_VERTEX;
+      memory->Planes[row * ROW + ODD + i] = NO_VERTEX;
     }
   }
 }
@@ -231,9 +231,9 @@ static void ResampleLayer(const SamplingMesh* mesh, const BrickCells* cells, int
     row.Parity = (p->First[1] + y + p->First[2] + z + p->IsMirrored) & 1;
     row.Borders = f[0]->Border | f[1]->Border | f[2]->Border | f[3]->Border;
 #if HAS_CUT
-    row.Apart = f[0]->Apart | f[1]->Apart | f[2]->Apart | f[3]->Apart;
+    row.Split = f[0]->Split | f[1]->Split | f[2]->Split | f[3]->Split;
 #else
-    row.Apart = 0;
+    row.Split = 0;
 #endif
     const uint specials = f[0]->Special | f[1]->Special | f[2]->Special | f[3]->Special;
     const int quarter =

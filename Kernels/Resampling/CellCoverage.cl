@@ -236,9 +236,9 @@ static int IsOwnerByIndex(
 }
 
 // The role of a tetrahedron for a sample.
-#define STRANGER 0 // does not hold the sample
-#define HOLDER 1   // has the sample on its surface; another tetrahedron writes it
-#define OWNER 2    // writes the sample
+#define OUTSIDE 0     // does not hold the sample
+#define ON_BOUNDARY 1 // has the sample on its surface; another tetrahedron writes it
+#define OWNER 2       // writes the sample
 
 // Returns the role of a tetrahedron for the sample with these weights.
 static OUTLINED int RoleOf(const SamplingMesh* mesh, int x, int y, int z, int tetrahedron, const long* weights,
@@ -250,7 +250,7 @@ static OUTLINED int RoleOf(const SamplingMesh* mesh, int x, int y, int z, int te
   {
     if (weights[k] < 0)
     {
-      return STRANGER;
+      return OUTSIDE;
     }
     if (weights[k] > 0)
     {
@@ -261,13 +261,13 @@ static OUTLINED int RoleOf(const SamplingMesh* mesh, int x, int y, int z, int te
       inside &= ShiftsInside(f->Normals[k], 0);
     }
   }
-  if (DEFORMVOLUME_IS_CLOSED(p->Pass))
+  if (DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass))
   {
     return OWNER; // the winner's key decides
   }
   if ((weights[0] && weights[1] && weights[2] && weights[3]) || (simplex & state.Interior))
   {
-    return inside ? OWNER : HOLDER;
+    return inside ? OWNER : ON_BOUNDARY;
   }
 #if HAS_CUT
   const int side = SideOfSample(mesh, x, y, z, tetrahedron, weights, p);
@@ -278,5 +278,5 @@ static OUTLINED int RoleOf(const SamplingMesh* mesh, int x, int y, int z, int te
     ? IsOwnerByIndex(x, y, z, tetrahedron, simplex, p)
     : IsOwnerOnBorder(mesh, x, y, z, tetrahedron, simplex,
         FirstShiftInside(f, tetrahedron, simplex), side, p);
-  return owner ? OWNER : HOLDER;
+  return owner ? OWNER : ON_BOUNDARY;
 }

@@ -15,7 +15,7 @@
 #define PLANE_VERTICES ((ROW_CELLS + 1) * ROWS)
 #define FLAG_BORDER 1  // the vertex is not interior
 #define FLAG_SPECIAL 2 // the vertex has a value that IS_SPECIAL
-#define FLAG_APART 4   // the vertex has different positions for the two sides of a smooth cut
+#define FLAG_SPLIT 4   // the vertex has different positions for the two sides of a smooth cut
 #define FLAG_OUTSIDE 8 // the slot has no vertex: it is outside the volume
 #define FLAG_WHOLE 16  // the cell whose lowest vertex this is has all of its tetrahedra
 
@@ -52,7 +52,7 @@ static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY 
   uint flags = state & DEFORMVOLUME_VERTEX_INTERIOR ? 0 : FLAG_BORDER;
   flags |= state & DEFORMVOLUME_CELL_WHOLE ? FLAG_WHOLE : 0;
 #if HAS_CUT
-  flags |= state & DEFORMVOLUME_VERTEX_TOGETHER ? 0 : FLAG_APART;
+  flags |= state & DEFORMVOLUME_VERTEX_TOGETHER ? 0 : FLAG_SPLIT;
 #endif
 #define PUT_COLUMN_VALUE(index, TYPE, BITS, SLOT)                                                  \
   {                                                                                                \
@@ -68,10 +68,10 @@ static __attribute__((always_inline)) void BoundCell(const Packet* packet, Bound
 {
   LOAD_VERTICES
 #define BOUND_CELL(C)                                                                              \
-  b->Low##C = Least(Least(Least(C##0, C##1), Least(C##2, C##3)),                                   \
-    Least(Least(C##4, C##5), Least(C##6, C##7)));                                                  \
-  b->High##C = Most(Most(Most(C##0, C##1), Most(C##2, C##3)),                                      \
-    Most(Most(C##4, C##5), Most(C##6, C##7)));
+  b->Low##C = Min(Min(Min(C##0, C##1), Min(C##2, C##3)),                                   \
+    Min(Min(C##4, C##5), Min(C##6, C##7)));                                                  \
+  b->High##C = Max(Max(Max(C##0, C##1), Max(C##2, C##3)),                                      \
+    Max(Max(C##4, C##5), Max(C##6, C##7)));
   BOUND_CELL(X)
   BOUND_CELL(Y)
   BOUND_CELL(Z)
@@ -100,7 +100,7 @@ static __attribute__((always_inline)) void StoreSample(const Packet* packet, uin
 
 // The weight above which a sample counts as inside. Aligned cells own all of their candidates, whatever the second
 // smallest weight.
-static float DecisiveWeight(const PacketCandidates* c, const PacketFrame* frame)
+static float HoldingWeight(const PacketCandidates* c, const PacketFrame* frame)
 {
   return c->HasAligned && c->Aligned ? -INFINITY : frame->Bound;
 }
@@ -111,7 +111,7 @@ static __attribute__((always_inline)) uint WeighCandidate(const PacketCandidates
   uint* undecidedByFloats)
 {
   WeighSamples(frame, scales, at->X, at->Y, at->Z, weights);
-  return DecideByFloats(weights, 1, DecisiveWeight(c, frame), frame->Bound, undecidedByFloats);
+  return DecideByFloats(weights, 1, HoldingWeight(c, frame), frame->Bound, undecidedByFloats);
 }
 
 // Whether DecideOnVertices decides the samples on vertices of an aligned cell next to missing cells. If floats leave
@@ -119,7 +119,7 @@ static __attribute__((always_inline)) uint WeighCandidate(const PacketCandidates
 static int IsDecidedOnVertices(const PacketCandidates* c, const PacketFrame* frame,
   const PacketScales* scales, const KernelParameters* p)
 {
-  int decided = c->HasBeside && c->Beside;
+  int decided = c->HasNextToMissing && c->NextToMissing;
   Walk at;
   BeginWalk(c, frame, &at, p);
   for (int i = 0; i < c->Number && decided && c->Extent < MAXIMUM_EXACT_EXTENT; ++i)
@@ -135,7 +135,7 @@ static int IsDecidedOnVertices(const PacketCandidates* c, const PacketFrame* fra
 
 // Resamples the samples of a cell whose frame is nice. mesh, isComplete, onlyUndecidedByFloats: as for
 // ResampleColumnCell. Returns the next step: CELL_DONE or DEFERRED_...
-static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
+static __attribute__((always_inline)) int VisitCellCandidates(const PacketCandidates* c,
   const PacketFrame* frame, const SamplingMesh* mesh, int isComplete, int onlyUndecidedByFloats,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
@@ -153,9 +153,9 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
   BeginWalk(c, frame, &at, p);
   // Inside the mesh, the only vertex among the candidates of an aligned cell is its lowest one, the first candidate.
   // This does not hold in passes that visit all cells which hold a voxel.
-  const int mayHoldEnds = isComplete || DEFORMVOLUME_IS_CLOSED(p->Pass);
+  const int mayHoldEnds = isComplete || DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass);
   const int beginsOnVertex = aligned && IsOnVertex(frame, &at);
-  const int beside = mesh && IsDecidedOnVertices(c, frame, &scales, p);
+  const int isOnGap = mesh && IsDecidedOnVertices(c, frame, &scales, p);
   uint writes = 0;
   uint isUndecided = 0; // whether floats leave a sample undecided, and 32-bit integers were not used
   uint needsInt64 = 0;  // whether 32-bit integers leave a sample undecided
@@ -165,7 +165,7 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
     uint undecidedByFloats;
     uint held = WeighCandidate(c, frame, &scales, &at, &weights, &undecidedByFloats);
     int onVertex = i == 0 ? beginsOnVertex : mayHoldEnds && aligned && IsOnVertex(frame, &at);
-    if (beside && IsOnVertex(frame, &at))
+    if (isOnGap && IsOnVertex(frame, &at))
     {
       undecidedByFloats = 0;
       held = DecideOnVertices(packet, 1, VerticesAt(frame, &at), &c->State, at.X + frame->X0,
@@ -173,7 +173,7 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
       onVertex = 1;
     }
     held = onlyUndecidedByFloats ? 0 : held;
-    if (isComplete && undecidedByFloats && isSmall && !DEFORMVOLUME_IS_CLOSED(p->Pass))
+    if (isComplete && undecidedByFloats && isSmall && !DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass))
     {
       const float sample[3] = { at.X, at.Y, at.Z };
       int isVertex;
@@ -185,7 +185,7 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
     {
       isUndecided |= undecidedByFloats;
     }
-    if (c->IsBeyond)
+    if (c->ExceedsPart)
     {
       held &= InOutput(at.X + frame->X0, at.Y + frame->Y0, at.Z + frame->Z0, p);
     }
@@ -206,7 +206,7 @@ static __attribute__((always_inline)) int TakeSamples(const PacketCandidates* c,
   {
     return DEFERRED_FLOATS;
   }
-  if ((isUndecided && isSmall && DEFORMVOLUME_IS_CLOSED(p->Pass)) || needsInt64)
+  if ((isUndecided && isSmall && DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass)) || needsInt64)
   {
     return DEFERRED_CELL_INT64;
   }
@@ -226,26 +226,26 @@ static __attribute__((always_inline)) int ResampleColumnCell(PacketCandidates* c
   Bounds bounds;
   BoundCell(&c->Cells, &bounds);
   FindPacketCandidates(&bounds, mesh, isComplete, output, c, p ARRAY_ARGUMENTS);
-  if (!c->There || c->Skip)
+  if (!c->Existing || c->Skip)
   {
     return CELL_DONE;
   }
   // Aligned cells at the border own samples depending on the surrounding cells.
-  if ((c->Some && c->Number > most) || (!isComplete && c->Cells.Border && c->HasAligned))
+  if ((c->WithCandidates && c->Number > most) || (!isComplete && c->Cells.Border && c->HasAligned))
   {
     return DEFERRED_FLOATS;
   }
-  MakePacketFrame(c, c->Fit, frame);
-  if (!frame->Nice)
+  MakePacketFrame(c, c->Simple, frame);
+  if (!frame->Decidable)
   {
     return DEFERRED_CELL_INT64;
   }
-  if (!c->Some)
+  if (!c->WithCandidates)
   {
     output->Inverted += frame->Inverted && !onlyUndecidedByFloats ? 5 : 0;
     return CELL_DONE;
   }
-  return TakeSamples(
+  return VisitCellCandidates(
     c, frame, mesh, isComplete, onlyUndecidedByFloats, output, p ARRAY_ARGUMENTS);
 }
 
@@ -262,7 +262,7 @@ static __attribute__((always_inline)) void MakeCellPacket(LocalRow row, int oddY
   cell->Z = z;
   cell->Parity = IsTurned(x, y, z, p);
   cell->Border = (flags & FLAG_BORDER) != 0;
-  cell->Apart = (flags & FLAG_APART) != 0;
+  cell->Split = (flags & FLAG_SPLIT) != 0;
 }
 
 // Returns the slot in which a work-item keeps the vertices of a deferred cell. A cell takes this slot in two rows of

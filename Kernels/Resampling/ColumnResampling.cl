@@ -17,7 +17,7 @@
 // one warp would handle all of them while the others wait.
 
 // A cell with more candidates is deferred: all lanes would wait for it.
-#define MOST_CANDIDATES_IN_COLUMN 64
+#define MAXIMUM_CANDIDATES_IN_COLUMN 64
 
 // Adds the counts of a work-item to those of its group.
 static void AddToGroup(const Output* output, __local uint* counts)
@@ -91,7 +91,7 @@ static int SortCell(uint any, uint lowest)
   {
     return DEFERRED_CELL_INT64;
   }
-  return any & FLAG_APART || (any & FLAG_BORDER && !(lowest & FLAG_WHOLE)) ? DEFERRED_FLOATS
+  return any & FLAG_SPLIT || (any & FLAG_BORDER && !(lowest & FLAG_WHOLE)) ? DEFERRED_FLOATS
                                                                            : SORT_BY_FLOATS;
 }
 
@@ -152,7 +152,7 @@ __kernel void ResampleColumns(GIVEN_PARAMETERS, __global const uint* bricks, __g
           &p);
         PacketFrame frame;
         step = ResampleColumnCell(
-          &c, MOST_CANDIDATES_IN_COLUMN, 0, &frame, 0, 0, &output, &p ARRAY_ARGUMENTS);
+          &c, MAXIMUM_CANDIDATES_IN_COLUMN, 0, &frame, 0, 0, &output, &p ARRAY_ARGUMENTS);
       }
       if (step != CELL_DONE)
       {

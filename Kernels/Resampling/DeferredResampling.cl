@@ -25,20 +25,20 @@ static void ResampleUndecided(const PacketCandidates* c, const PacketFrame* fram
     WeighCandidate(c, frame, &scales, &at, &weights, &undecidedByFloats);
     const float x = at.X + frame->X0, y = at.Y + frame->Y0, z = at.Z + frame->Z0;
     if (!undecidedByFloats || !InOutput(x, y, z, p) ||
-      (c->HasBeside && c->Beside && IsOnVertex(frame, &at)))
+      (c->HasNextToMissing && c->NextToMissing && IsOnVertex(frame, &at)))
     {
       continue;
     }
     const Vector voxel = { (int)x + p->OutputFirst[0], (int)y + p->OutputFirst[1],
       (int)z + p->OutputFirst[2] };
     const Candidates only = { voxel, voxel };
-    // In the closed passes, MakeCell tests the sample and not the whole cell.
-    if (isMade < 0 || DEFORMVOLUME_IS_CLOSED(p->Pass))
+    // In passes with closed tetrahedra, MakeCell tests the sample and not the whole cell.
+    const int isClosed = DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass);
+    if (isMade < 0 || isClosed)
     {
       // A whole cell is not divided, so there are no views.
-      isMade = MakeCell(&keeping, packet->X, packet->Y, packet->Z,
-                 DEFORMVOLUME_IS_CLOSED(p->Pass) ? &only : &all, &cell, 0, output, p) &&
-        !IsPutOff(&cell, &only, output, p);
+      isMade = MakeCell(&keeping, packet->X, packet->Y, packet->Z, isClosed ? &only : &all, &cell, 0, output, p) &&
+        !IsDeferred(&cell, &only, output, p);
     }
     if (isMade)
     {

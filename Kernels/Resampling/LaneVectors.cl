@@ -13,9 +13,9 @@
 #define AS_INTS JOIN(as_int, LANES)
 // A value where a mask is set, otherwise 0.
 #define WHERE(mask, v) ((mask) & (v))
-// SELDOM: attribute of functions that are rarely called. UNROLLED: for loops whose arrays stay out of registers
+// COLD: attribute of functions that are rarely called. UNROLLED: for loops whose arrays stay out of registers
 // otherwise.
-#define SELDOM __attribute__((noinline))
+#define COLD __attribute__((noinline))
 #define UNROLLED
 #define NOT_UNROLLED
 #else
@@ -29,9 +29,9 @@
 #define AS_INTS as_int
 #define WHERE(mask, v) ((mask) ? (v) : 0)
 #if HAS_COLUMN_KERNEL
-#define SELDOM // a call would save all registers to memory
+#define COLD // a call would save all registers to memory
 #else
-#define SELDOM __attribute__((noinline))
+#define COLD __attribute__((noinline))
 #endif
 #define UNROLLED _Pragma("unroll")
 #define NOT_UNROLLED _Pragma("unroll 1")
@@ -45,19 +45,19 @@ typedef int16 __attribute__((aligned(4))) UnalignedInt16;
 #endif
 
 #if LANES > 1
-static FLOATS Least(FLOATS a, FLOATS b)
+static FLOATS Min(FLOATS a, FLOATS b)
 {
   return a < b ? a : b;
 }
 
-static FLOATS Most(FLOATS a, FLOATS b)
+static FLOATS Max(FLOATS a, FLOATS b)
 {
   return a > b ? a : b;
 }
 #else
 // One instruction; a comparison and a selection would be two.
-#define Least fmin
-#define Most fmax
+#define Min fmin
+#define Max fmax
 #endif
 
 // 1 / v with an error of one or two units in the last place, for numbers that are neither tiny nor huge.
@@ -158,7 +158,7 @@ static void Append(INTS v, uint bits, int* target)
   for (int lane = 31 - clz(bits); lane >= 0; bits ^= 1u << lane, lane = 31 - clz(bits))
 
 // Returns the largest lane.
-static int MostOf(INTS v)
+static int MaxOf(INTS v)
 {
 #if LANES == 1
   return v;
@@ -176,13 +176,13 @@ static int MostOf(INTS v)
 #endif
 }
 
-// Return the largest and the smallest of some lanes.
-static int MostAmong(INTS some, INTS v)
+// Return the largest and the smallest of the lanes in a mask.
+static int MaxAmong(INTS mask, INTS v)
 {
-  return MostOf(some ? v : (INTS)INT_MIN);
+  return MaxOf(mask ? v : (INTS)INT_MIN);
 }
 
-static int LeastAmong(INTS some, INTS v)
+static int MinAmong(INTS mask, INTS v)
 {
-  return ~MostAmong(some, ~v);
+  return ~MaxAmong(mask, ~v);
 }

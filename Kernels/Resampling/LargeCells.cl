@@ -25,7 +25,7 @@ __kernel void ResampleLargeCells(GIVEN_PARAMETERS,
   // The cell itself was counted before.
   output.Inverted = output.Overstretched = output.Missing = 0;
   const Candidates part = PieceOf(FindCandidates(cell.Low, cell.High, 0, &all), piece.w);
-  if (!DEFORMVOLUME_IS_CLOSED(p.Pass) || AreUnsettled(part, &output, &p))
+  if (!DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p.Pass) || AreUnsettled(part, &output, &p))
   {
     ResampleSamples(&mesh, &cell, &part, &output, &p ARRAY_ARGUMENTS);
   }

@@ -16,21 +16,23 @@
 typedef struct
 {
   Packet Cells;
-  uint There;       // bits of cells with a vertex that has a position, and no vertex outside the volume
-  uint Fit;         // small cells of There whose tetrahedra are all active and have positions
-  uint Some;        // cells of Fit with candidates
-  FLOATS Extent;    // the longest edge of the box
-  FLOATS BoundScale;     // Extent times the sum of the box's three faces; larger if normals are not exact
-  INTS First[3];    // the first candidate, in output voxels
-  INTS Count[3];    // number of candidates on each axis
-  INTS Voxel;       // index of the first candidate in the output
-  INTS Number;      // total number of candidates, for cells with candidates
-  int IsBeyond;     // whether some candidates may lie outside the part of the output that is made
-  INTS Aligned;     // cells whose edges are parallel to the axes of the output, if HasAligned
-  INTS Beside;      // aligned cells with a missing neighbor at a vertex (DecideOnVertices), if HasBeside
-  PacketState State; // if HasBeside
+  // Sets of cells, as bits:
+  uint Existing;       // cells with a vertex that has a position, and no vertex outside the volume
+  uint Simple;         // existing cells that are small, and whose tetrahedra are all active and have positions
+  uint WithCandidates; // simple cells with candidates
+  FLOATS Extent;       // the longest edge of the box
+  FLOATS BoundScale;   // Extent times the sum of the box's three faces; larger if normals are not exact
+  INTS First[3];       // the first candidate, in output voxels
+  INTS Count[3];       // number of candidates on each axis
+  INTS Voxel;          // index of the first candidate in the output
+  INTS Number;         // total number of candidates, for cells with candidates
+  int ExceedsPart;     // whether candidates may lie outside the part of the output that is made
+  INTS Aligned;        // cells whose edges are parallel to the axes of the output, if HasAligned
+  // Aligned cells with a missing neighbor at a vertex (DecideOnVertices), if HasNextToMissing.
+  INTS NextToMissing;
+  PacketState State; // if HasNextToMissing
   int HasAligned;
-  int HasBeside;
+  int HasNextToMissing;
   int Skip; // whether no cell touches a voxel that is still to be won
 } PacketCandidates;
 
@@ -53,8 +55,8 @@ static __attribute__((always_inline)) void BoundQuads(const LocalRow* rows, int 
     const FLOATS c1 = LOAD(rows[1] + begin + (slot)*HALF_ROW);                                     \
     const FLOATS c2 = LOAD(rows[2] + begin + (slot)*HALF_ROW);                                     \
     const FLOATS c3 = LOAD(rows[3] + begin + (slot)*HALF_ROW);                                     \
-    b->Low##C = Least(Least(c0, c1), Least(c2, c3));                                               \
-    b->High##C = Most(Most(c0, c1), Most(c2, c3));                                                 \
+    b->Low##C = Min(Min(c0, c1), Min(c2, c3));                                               \
+    b->High##C = Max(Max(c0, c1), Max(c2, c3));                                                 \
   }
   BOUND_QUADS(X, 0)
   BOUND_QUADS(Y, 1)
@@ -63,12 +65,12 @@ static __attribute__((always_inline)) void BoundQuads(const LocalRow* rows, int 
 
 static __attribute__((always_inline)) void Join(const Bounds* a, const Bounds* b, Bounds* joined)
 {
-  joined->LowX = Least(a->LowX, b->LowX);
-  joined->LowY = Least(a->LowY, b->LowY);
-  joined->LowZ = Least(a->LowZ, b->LowZ);
-  joined->HighX = Most(a->HighX, b->HighX);
-  joined->HighY = Most(a->HighY, b->HighY);
-  joined->HighZ = Most(a->HighZ, b->HighZ);
+  joined->LowX = Min(a->LowX, b->LowX);
+  joined->LowY = Min(a->LowY, b->LowY);
+  joined->LowZ = Min(a->LowZ, b->LowZ);
+  joined->HighX = Max(a->HighX, b->HighX);
+  joined->HighY = Max(a->HighY, b->HighY);
+  joined->HighZ = Max(a->HighZ, b->HighZ);
 }
 
 // Shifts by one lane: lanes from the second one on, then the first lane of `behind`.
@@ -95,7 +97,7 @@ static __attribute__((always_inline)) uint FindAxialEdges(const Packet* packet, 
 // Finds aligned cells, as in a volume that is undeformed, shifted, scaled along axes or rotated by right angles: each
 // coordinate varies along a single axis of the voxel grid. rises: output: the cells whose coordinates grow with the
 // indices.
-static SELDOM INTS FindAligned(const Packet* packet, int mirror, INTS* rises)
+static COLD INTS FindAligned(const Packet* packet, int mirror, INTS* rises)
 {
   LOAD_VERTICES
 #define SAME(C, a, b) (C##a == C##b)
@@ -116,7 +118,7 @@ typedef struct
   INTS X, Y, Z;
 } ParallelEdges;
 
-static SELDOM void FindParallelEdges(
+static COLD void FindParallelEdges(
   const Packet* packet, int mirror, ParallelEdges* edges)
 {
   LOAD_VERTICES
@@ -131,12 +133,12 @@ static SELDOM void FindParallelEdges(
 // The first sample of the output within bounds on an axis, and one past the last. Lanes without a cell may have any
 // result. Cells with a vertex without position extend to the end of the output, as their samples may be anywhere
 // beyond the other vertices. Clamp before converting: float-to-int conversion of NO_SOURCE gives INT_MIN on x86.
-#define FIRST_OF(low) TO_INTS(Most(low, 0.0f) + ALMOST_ONE)
-#define END_OF(high, toEnd, size) TO_INTS(Least((high) + toEnd, (float)(size)))
+#define FIRST_OF(low) TO_INTS(Max(low, 0.0f) + ALMOST_ONE)
+#define END_OF(high, toEnd, size) TO_INTS(Min((high) + toEnd, (float)(size)))
 
 // Marks all samples in aligned cells as touched: these cells neither test their high sides nor whether they own a
 // sample.
-static SELDOM void TouchAligned(
+static COLD void TouchAligned(
   INTS aligned, const Bounds* b, Output* output, const KernelParameters* p)
 {
   const INTS firstX = FIRST_OF(b->LowX);
@@ -145,19 +147,19 @@ static SELDOM void TouchAligned(
   const INTS endX = END_OF(b->HighX, 1.0f, p->OutputSize[0]);
   const INTS endY = END_OF(b->HighY, 1.0f, p->OutputSize[1]);
   const INTS endZ = END_OF(b->HighZ, 1.0f, p->OutputSize[2]);
-  const INTS some = aligned & (firstX < endX) & (firstY < endY) & (firstZ < endZ);
-  if (!LaneBits(some))
+  const INTS touched = aligned & (firstX < endX) & (firstY < endY) & (firstZ < endZ);
+  if (!LaneBits(touched))
   {
     return;
   }
-  const int lastX = MostAmong(some, endX) - 1;
-  const int lastY = MostAmong(some, endY) - 1;
-  const int lastZ = MostAmong(some, endZ) - 1;
-  for (int z = LeastAmong(some, firstZ); z < lastZ + DEFORMVOLUME_PATCH; z += DEFORMVOLUME_PATCH)
+  const int lastX = MaxAmong(touched, endX) - 1;
+  const int lastY = MaxAmong(touched, endY) - 1;
+  const int lastZ = MaxAmong(touched, endZ) - 1;
+  for (int z = MinAmong(touched, firstZ); z < lastZ + DEFORMVOLUME_PATCH; z += DEFORMVOLUME_PATCH)
   {
-    for (int y = LeastAmong(some, firstY); y < lastY + DEFORMVOLUME_PATCH; y += DEFORMVOLUME_PATCH)
+    for (int y = MinAmong(touched, firstY); y < lastY + DEFORMVOLUME_PATCH; y += DEFORMVOLUME_PATCH)
     {
-      for (int x = LeastAmong(some, firstX); x < lastX + DEFORMVOLUME_PATCH;
+      for (int x = MinAmong(touched, firstX); x < lastX + DEFORMVOLUME_PATCH;
            x += DEFORMVOLUME_PATCH)
       {
         Touch(min(x, lastX), min(y, lastY), min(z, lastZ), output, p);
@@ -187,12 +189,12 @@ static __attribute__((always_inline)) void FetchOutput(
 static __attribute__((always_inline)) void MeasureCells(const Bounds* b, PacketCandidates* c)
 {
   const FLOATS sizeX = b->HighX - b->LowX, sizeY = b->HighY - b->LowY, sizeZ = b->HighZ - b->LowZ;
-  const FLOATS extent = Most(sizeX, Most(sizeY, sizeZ));
-  const uint there = LaneBits((b->LowX > 0.5f * NOT_THERE) & (b->LowX < 0.5f * NO_SOURCE));
-  c->There = there;
+  const FLOATS extent = Max(sizeX, Max(sizeY, sizeZ));
+  const uint existing = LaneBits((b->LowX > 0.5f * NO_VERTEX) & (b->LowX < 0.5f * NO_SOURCE));
+  c->Existing = existing;
   c->Extent = extent;
   c->BoundScale = extent * fma(sizeX, sizeY, sizeZ * (sizeX + sizeY));
-  if (LaneBits(extent > EXACT_NORMALS_EXTENT) & there)
+  if (LaneBits(extent > EXACT_NORMALS_EXTENT) & existing)
   {
     c->BoundScale *= extent > EXACT_NORMALS_EXTENT ? (FLOATS)(INEXACT_NORMALS) : (FLOATS)(1.0f);
   }
@@ -207,7 +209,7 @@ static __attribute__((always_inline)) void LookForAligned(
   *rises = 0;
   // If no cell has two edges parallel to axes, there are no aligned cells. Lanes without a cell contain arbitrary
   // values and must not decide.
-  uint alignedCells = c->There & FindAxialEdges(packet, 1);
+  uint alignedCells = c->Existing & FindAxialEdges(packet, 1);
   if (alignedCells)
   {
     alignedCells &= FindAxialEdges(packet, 2);
@@ -216,7 +218,7 @@ static __attribute__((always_inline)) void LookForAligned(
   if (c->HasAligned)
   {
     *aligned = FindAligned(packet, Mirror(packet->X, packet->Y, packet->Z, p), rises);
-    c->HasAligned = (c->There & LaneBits(*aligned)) != 0;
+    c->HasAligned = (c->Existing & LaneBits(*aligned)) != 0;
   }
 }
 
@@ -239,17 +241,17 @@ static __attribute__((always_inline)) void EndOnBorder(PacketCandidates* c, INTS
   if (p->HasState || c->HasAligned)
   {
     StatesOfPacket(mesh, packet->X, packet->Y, packet->Z, state, p);
-    *whole = c->There & LaneBits(state->Whole);
+    *whole = c->Existing & LaneBits(state->Whole);
   }
   // Aligned cells at the border leave the samples on their high sides to the next cells, if these exist. This
   // requires that the high sides have the higher coordinates.
-  if (!DEFORMVOLUME_IS_CLOSED(p->Pass) && c->HasAligned)
+  if (!DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass) && c->HasAligned)
   {
     const INTS inner = state->Interior == 255;
-    const INTS all = *aligned & LanesOf(c->There);
+    const INTS all = *aligned & LanesOf(c->Existing);
     *aligned = all & (inner | ((state->Regular == 255) & rises));
-    c->Beside = all & ~*aligned & rises;
-    c->HasBeside = LaneBits(c->Beside) != 0;
+    c->NextToMissing = all & ~*aligned & rises;
+    c->HasNextToMissing = LaneBits(c->NextToMissing) != 0;
     output->Assumed |= LaneBits(*aligned & ~inner) != 0;
     const INTS isLastX = packet->X + 2 * LANE_INDEX == p->Size[0] - 2;
     toEnds->X = (*aligned & ~isLastX) ? ALMOST_ONE : toEnds->X;
@@ -286,7 +288,7 @@ static __attribute__((always_inline)) void FindSamplesOfWhole(
   max(TO_INTS((low) + (MAXIMUM_EXTENT + ALMOST_ONE)) - (int)MAXIMUM_EXTENT,                        \
     (INTS)(max(p->WholeFirst[axis], -(int)MAXIMUM_EXTENT)))
 #define WHOLE_END(high, toEnd, axis)                                                               \
-  (TO_INTS(Least((high) + toEnd,                                                                   \
+  (TO_INTS(Min((high) + toEnd,                                                                   \
              (float)min(p->WholeEnd[axis], p->OutputSize[axis] + (int)MAXIMUM_EXTENT)) +           \
      MAXIMUM_EXTENT) -                                                                             \
     (int)MAXIMUM_EXTENT)
@@ -304,13 +306,13 @@ static __attribute__((always_inline)) void SetCandidates(const Bounds* b, const 
   const SamplesInBounds* inPart, PacketCandidates* c, const KernelParameters* p)
 {
   // A cell that lies in the part has the same samples in the whole output.
-  c->IsBeyond = p->IsPart &&
-    LaneBits((Least(b->LowX, Least(b->LowY, b->LowZ)) < 0.0f) |
+  c->ExceedsPart = p->IsPart &&
+    LaneBits((Min(b->LowX, Min(b->LowY, b->LowZ)) < 0.0f) |
       (inPart->FirstX + inPart->CountX == p->OutputSize[0]) |
       (inPart->FirstY + inPart->CountY == p->OutputSize[1]) |
       (inPart->FirstZ + inPart->CountZ == p->OutputSize[2]));
   SamplesInBounds s = *inPart;
-  if (c->IsBeyond)
+  if (c->ExceedsPart)
   {
     FindSamplesOfWhole(b, toEnds, &s, p);
   }
@@ -324,16 +326,16 @@ static __attribute__((always_inline)) void SetCandidates(const Bounds* b, const 
   c->Number = s.CountX * s.CountY * s.CountZ;
 }
 
-// Whether some cells, as bits, touch no voxel that is still to be won.
+// Whether cells, as bits, touch no voxel that is still to be won.
 static __attribute__((always_inline)) int IsSettled(
-  uint some, const SamplesInBounds* s, const Output* output, const KernelParameters* p)
+  uint cells, const SamplesInBounds* s, const Output* output, const KernelParameters* p)
 {
-  const INTS among = LanesOf(some);
-  const int first[3] = { LeastAmong(among, s->FirstX), LeastAmong(among, s->FirstY),
-    LeastAmong(among, s->FirstZ) };
-  const int last[3] = { MostAmong(among, s->FirstX + s->CountX - 1),
-    MostAmong(among, s->FirstY + s->CountY - 1), MostAmong(among, s->FirstZ + s->CountZ - 1) };
-  return !some || !AnyUnsettled(output->Patches, first, last, p);
+  const INTS among = LanesOf(cells);
+  const int first[3] = { MinAmong(among, s->FirstX), MinAmong(among, s->FirstY),
+    MinAmong(among, s->FirstZ) };
+  const int last[3] = { MaxAmong(among, s->FirstX + s->CountX - 1),
+    MaxAmong(among, s->FirstY + s->CountY - 1), MaxAmong(among, s->FirstZ + s->CountZ - 1) };
+  return !cells || !AnyUnsettled(output->Patches, first, last, p);
 }
 
 // Finds the candidates of a packet. b: the bounds of the cells. mesh: null if vertices have no state. withBorder:
@@ -349,8 +351,8 @@ static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
 
   // Candidates are half-open inside the mesh: by the fill rule no sample on the upper side is owned.
   const int border = c->Cells.Border;
-  uint whole = c->There;
-  c->HasBeside = 0;
+  uint whole = c->Existing;
+  c->HasNextToMissing = 0;
   const FLOATS toEnd = border || p->Pass != DEFORMVOLUME_PASS_DIRECT ? 1.0f : ALMOST_ONE;
   ToEnds toEnds = { toEnd, toEnd, toEnd };
   if (border && withBorder)
@@ -358,7 +360,7 @@ static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
     EndOnBorder(c, rises, mesh, &whole, &aligned, &toEnds, output, p);
   }
 #if HAS_CUT
-  if (c->Cells.Apart)
+  if (c->Cells.Split)
   {
     whole &= ~FindDivided(mesh, c->Cells.X, c->Cells.Y, c->Cells.Z, p);
   }
@@ -372,26 +374,26 @@ static __attribute__((always_inline)) void FindPacketCandidates(const Bounds* b,
       {
         toEnds.X = toEnds.Y = toEnds.Z = aligned ? (FLOATS)(ALMOST_ONE) : (FLOATS)(1.0f);
       }
-      TouchAligned(LanesOf(c->There) & aligned, b, output, p);
+      TouchAligned(LanesOf(c->Existing) & aligned, b, output, p);
     }
   }
   SamplesInBounds s;
   FindSamples(b, &toEnds, &s, p);
-  const uint some = c->There & LaneBits((s.CountX > 0) & (s.CountY > 0) & (s.CountZ > 0));
+  const uint withCandidates = c->Existing & LaneBits((s.CountX > 0) & (s.CountY > 0) & (s.CountZ > 0));
   // If a cut divides cells, these extend beyond the bounds of their vertices.
-  const int isDivided = HAS_CUT && (c->There & ~whole);
-  c->Skip = DEFORMVOLUME_IS_CLOSED(p->Pass) && !isDivided && IsSettled(some, &s, output, p);
+  const int isDivided = HAS_CUT && (c->Existing & ~whole);
+  c->Skip = DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass) && !isDivided && IsSettled(withCandidates, &s, output, p);
   SetCandidates(b, &toEnds, &s, c, p);
-  c->Fit = whole & LaneBits(c->Extent < MAXIMUM_EXTENT) &
-    ~(some & LaneBits(c->Number > MAXIMUM_CANDIDATES));
-  c->Some = some & c->Fit;
+  c->Simple = whole & LaneBits(c->Extent < MAXIMUM_EXTENT) &
+    ~(withCandidates & LaneBits(c->Number > MAXIMUM_CANDIDATES));
+  c->WithCandidates = withCandidates & c->Simple;
 }
 
 #if LANES > 1
 // Finds the candidates of the two packets at slot k of a row of cells, for even and for odd x. Cells of the second
 // packet begin at the odd vertices. even: input: bounds of the quads of even x from slot k on; output: from slot k +
 // LANES on. output: counts the packets of the span.
-static SELDOM void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
+static COLD void FindPairCandidates(const RowOfCells* row, int k, Bounds* even,
   const SamplingMesh* mesh, Output* output, PacketCandidates* candidates,
   const KernelParameters* p ARRAY_PARAMETERS)
 {

@@ -75,7 +75,7 @@ static void StatesOfLanes(
   states->Regular = regular.Vector;
 }
 
-static SELDOM void StatesOfPacket(const SamplingMesh* mesh, int x, int y, int z,
+static COLD void StatesOfPacket(const SamplingMesh* mesh, int x, int y, int z,
   PacketState* states, const KernelParameters* p)
 {
   const INTS cellX = x + 2 * LANE_INDEX;
@@ -141,7 +141,7 @@ static uint FindDividedLanes(
 
 // Returns the bits of cells of a packet that a smooth cut may divide (CutCells.cl): crossed cells with a vertex that
 // has different positions for the two sides.
-static SELDOM uint FindDivided(
+static COLD uint FindDivided(
   const SamplingMesh* mesh, int x, int y, int z, const KernelParameters* p)
 {
   __global const uchar* const state = BeginStates(mesh, x, y, z, p);
@@ -163,7 +163,7 @@ static SELDOM uint FindDivided(
 // extent)^3. Normals are at most 2 (256 extent)^2 each, and three times that in total. They are exact in float, in
 // which products are cheaper. sample: in voxels relative to vertex 0 of the cell. inverted: lanes with inverted
 // tetrahedra. simplex: the vertices of the simplex that contains the sample, 0 if it is not in the cell.
-static SELDOM INTS HoldSample(
+static COLD INTS HoldSample(
   const Packet* packet, const FLOATS* sample, int odd, INTS inverted, INTS* simplex)
 {
 #if LANES > 1
@@ -257,8 +257,8 @@ static __attribute__((always_inline)) uint InOutput(
     (iz >= 0) & (iz < p->OutputSize[2]));
 }
 
-// Marks the samples that some lanes, given by bits, hold but do not own. x, y, z: in output voxels.
-static SELDOM void TouchHeld(
+// Marks the samples that lanes, given by bits, hold but do not own. x, y, z: in output voxels.
+static COLD void TouchHeld(
   uint lanes, FLOATS x, FLOATS y, FLOATS z, Output* output, const KernelParameters* p)
 {
   Lanes voxel[3];
@@ -322,7 +322,7 @@ static __attribute__((always_inline)) uint DecideByIntegers(const Packet* packet
 // Whether a cell owns a sample on one of its vertices at the border of the sampling mesh. The cell must be aligned,
 // with all of its tetrahedra and coordinates that grow with the indices. Of its tetrahedra at the vertex, the candidate
 // is the one at the edge along x, into which a shift away from the vertex leads.
-static SELDOM int OwnsVertex(
+static COLD int OwnsVertex(
   const SamplingMesh* mesh, int x, int y, int z, int vertex, const KernelParameters* p)
 {
   const int edge = 1 << vertex | 1 << (vertex ^ 1);
@@ -348,9 +348,9 @@ static SELDOM int OwnsVertex(
   return IsOwnerOnBorder(&keeping, x, y, z, tetrahedron, 1 << vertex, shift, side, p);
 }
 
-// Returns which of some cells, as bits, own their sample, which is a vertex. The cells are as for OwnsVertex.
+// Returns which of the given cells, as bits, own their sample, which is a vertex. The cells are as for OwnsVertex.
 // simplex: the vertex as a mask. x, y, z: the sample, in output voxels.
-static SELDOM uint DecideOnVertices(const Packet* packet, uint some, INTS simplex,
+static COLD uint DecideOnVertices(const Packet* packet, uint cells, INTS simplex,
   const PacketState* state, FLOATS x, FLOATS y, FLOATS z, const SamplingMesh* mesh, Output* output,
   const KernelParameters* p)
 {
@@ -359,9 +359,9 @@ static SELDOM uint DecideOnVertices(const Packet* packet, uint some, INTS simple
   const INTS outer = (simplex & state->Interior) == 0;
   const INTS regular = (simplex & state->Regular) != 0;
   // A cell owns its lowest vertex: the shift +++ leads into the cell.
-  uint held = some & LaneBits((outer & regular) ? OwnByIndex(packet, simplex, mirror, p) : lowest);
-  output->Assumed |= (some & LaneBits(outer)) != 0;
-  uint open = some & LaneBits(outer & ~regular & ~lowest);
+  uint held = cells & LaneBits((outer & regular) ? OwnByIndex(packet, simplex, mirror, p) : lowest);
+  output->Assumed |= (cells & LaneBits(outer)) != 0;
+  uint open = cells & LaneBits(outer & ~regular & ~lowest);
   Lanes vertices;
   vertices.Vector = simplex;
   FOR_EACH_LANE(lane, open)
@@ -371,7 +371,7 @@ static SELDOM uint DecideOnVertices(const Packet* packet, uint some, INTS simple
   }
   if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
   {
-    TouchHeld(some & ~held, x, y, z, output, p);
+    TouchHeld(cells & ~held, x, y, z, output, p);
   }
   return held;
 }

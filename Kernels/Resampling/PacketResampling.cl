@@ -34,9 +34,9 @@ static __attribute__((noinline)) uint DecideOnEdges(const Packet* packet, const 
   const KernelParameters* p)
 {
   const int mirror = Mirror(packet->X, packet->Y, packet->Z, p);
-  const INTS lowX = x == Least(f->X0, f->X7), onX = lowX | (x == Most(f->X0, f->X7));
-  const INTS lowY = y == Least(f->Y0, f->Y7), onY = lowY | (y == Most(f->Y0, f->Y7));
-  const INTS lowZ = z == Least(f->Z0, f->Z7), onZ = lowZ | (z == Most(f->Z0, f->Z7));
+  const INTS lowX = x == Min(f->X0, f->X7), onX = lowX | (x == Max(f->X0, f->X7));
+  const INTS lowY = y == Min(f->Y0, f->Y7), onY = lowY | (y == Max(f->Y0, f->Y7));
+  const INTS lowZ = z == Min(f->Z0, f->Z7), onZ = lowZ | (z == Max(f->Z0, f->Z7));
 #define FROM(slot) VERTEX(mirror, slot)
   const INTS alongX = edges->X & onY & onZ;
   const INTS ownsX = alongX & lowY & lowZ & (x >= FROM(0)) & (x < VERTEX(mirror ^ 1, 0));
@@ -69,7 +69,7 @@ typedef struct
 static __attribute__((noinline)) int LookForEdges(const Packet* packet, const PacketFrame* frame,
   const SamplingMesh* mesh, ParallelEdges* edges, const KernelParameters* p)
 {
-  INTS inside = LanesOf(frame->Nice) & ~frame->Inverted;
+  INTS inside = LanesOf(frame->Decidable) & ~frame->Inverted;
   if (packet->Border)
   {
     PacketState state;
@@ -83,22 +83,22 @@ static __attribute__((noinline)) int LookForEdges(const Packet* packet, const Pa
   return LaneBits(edges->X | edges->Y | edges->Z) != 0;
 }
 
-// Visits the candidates of some cells, given as bits. hits: output: the bits of cells with a sample in each round.
+// Visits the candidates of cells, given as bits. hits: output: the bits of cells with a sample in each round.
 // Other parameters are as for ResamplePacket.
-static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
-  const PacketFrame* frame, uint some, const PacketState* state, const SamplingMesh* mesh, Output* output,
+static __attribute__((always_inline)) void VisitCandidates(const PacketCandidates* c,
+  const PacketFrame* frame, uint cells, const PacketState* state, const SamplingMesh* mesh, Output* output,
   Found* found, UndecidedSamples* undecidedSamples, ushort* hits, Rounds* rounds,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const Packet* const packet = &c->Cells;
   // Aligned cells own all of their candidates, whatever the second smallest weight, which decides otherwise.
   const int hasAligned = c->HasAligned;
-  FLOATS decisive = frame->Bound;
+  FLOATS threshold = frame->Bound;
   INTS aligned = 0;
   if (hasAligned)
   {
-    aligned = LanesOf(frame->Nice) & c->Aligned;
-    decisive = aligned ? (FLOATS)(-INFINITY) : frame->Bound;
+    aligned = LanesOf(frame->Decidable) & c->Aligned;
+    threshold = aligned ? (FLOATS)(-INFINITY) : frame->Bound;
   }
   PacketScales scales;
   FindScales(frame, &scales);
@@ -112,19 +112,19 @@ static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
     SampleWeights weights;
     WeighSamples(frame, &scales, at.X, at.Y, at.Z, &weights);
     uint undecidedByFloats;
-    uint held = DecideByFloats(&weights, some, decisive, frame->Bound, &undecidedByFloats);
+    uint held = DecideByFloats(&weights, cells, threshold, frame->Bound, &undecidedByFloats);
     INTS onVertex = 0;
-    if (c->HasBeside && !state)
+    if (c->HasNextToMissing && !state)
     {
-      const INTS beside = LanesOf(some) & c->Beside & IsOnVertex(frame, &at);
-      const uint decided = LaneBits(beside);
+      const INTS atGap = LanesOf(cells) & c->NextToMissing & IsOnVertex(frame, &at);
+      const uint decided = LaneBits(atGap);
       if (decided)
       {
         undecidedByFloats &= ~decided;
         held = (held & ~decided) |
           DecideOnVertices(packet, decided, VerticesAt(frame, &at), &c->State, at.X + frame->X0,
             at.Y + frame->Y0, at.Z + frame->Z0, mesh, output, p);
-        onVertex = beside;
+        onVertex = atGap;
       }
     }
     if (undecidedByFloats && hasEdges)
@@ -150,7 +150,7 @@ static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
       rounds->NeedsNextStep |= undecidedByFloats;
       undecidedSamples->Rounds[rounds->UndecidedRounds++] = rounds->Count << 16 | undecidedByFloats;
     }
-    if (c->IsBeyond)
+    if (c->ExceedsPart)
     {
       held &= InOutput(at.X + frame->X0, at.Y + frame->Y0, at.Z + frame->Z0, p);
     }
@@ -166,8 +166,8 @@ static __attribute__((always_inline)) void TakeRounds(const PacketCandidates* c,
     rounds->Writes += popcount(held);
     KeepSamples(packet, held, at.Voxel, frame->Inverted, &weights, found, &kept, output,
       p ARRAY_ARGUMENTS);
-    some &= LaneBits(c->Number > (int)++rounds->Count);
-    if (!some)
+    cells &= LaneBits(c->Number > (int)++rounds->Count);
+    if (!cells)
     {
       break;
     }
@@ -189,17 +189,17 @@ static __attribute__((always_inline)) void ResamplePacket(
   const KernelParameters* p ARRAY_PARAMETERS)
 {
   const int exact = state != 0;
-  const uint there = exact ? c->There & only : c->There;
+  const uint existing = exact ? c->Existing & only : c->Existing;
   PacketFrame frame;
-  MakePacketFrame(c, c->Fit & there, &frame);
-  const uint bent = there & ~frame.Nice;
+  MakePacketFrame(c, c->Simple & existing, &frame);
+  const uint bent = existing & ~frame.Decidable;
   ushort hits[MAXIMUM_CANDIDATES];
   Rounds rounds = { 0, 0, 0, 0 };
-  const uint some = c->Some & frame.Nice;
-  if (some)
+  const uint visited = c->WithCandidates & frame.Decidable;
+  if (visited)
   {
-    TakeRounds(
-      c, &frame, some, state, mesh, output, found, undecidedSamples, hits, &rounds, p ARRAY_ARGUMENTS);
+    VisitCandidates(
+      c, &frame, visited, state, mesh, output, found, undecidedSamples, hits, &rounds, p ARRAY_ARGUMENTS);
   }
   uint needsNextStep = rounds.NeedsNextStep;
   outcome->SamplesNeedInt64 = 0;
@@ -209,20 +209,20 @@ static __attribute__((always_inline)) void ResamplePacket(
     outcome->SamplesNeedInt64 = needsNextStep & ~LaneBits(c->Extent < MAXIMUM_EXACT_EXTENT);
     needsNextStep ^= outcome->SamplesNeedInt64;
   }
-  output->Inverted += 5 * popcount(frame.Turned & frame.Nice & ~needsNextStep);
-  const uint again = bent | needsNextStep;
-  if (again)
+  output->Inverted += 5 * popcount(frame.InvertedBits & frame.Decidable & ~needsNextStep);
+  const uint repeated = bent | needsNextStep;
+  if (repeated)
   {
     // These cells will write their samples again. The samples must not be counted twice.
     for (uint i = 0; i < rounds.Count; ++i)
     {
-      rounds.Writes -= popcount(hits[i] & again);
+      rounds.Writes -= popcount(hits[i] & repeated);
     }
   }
   output->Writes += rounds.Writes;
-  // 32-bit integers decide ownership only, so not in the closed passes.
-  outcome->NeedsInt32 = exact || DEFORMVOLUME_IS_CLOSED(p->Pass) ? 0 : needsNextStep;
-  outcome->NeedsInt64 = again & ~outcome->NeedsInt32;
+  // 32-bit integers decide ownership only, so not in passes with closed tetrahedra.
+  outcome->NeedsInt32 = exact || DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass) ? 0 : needsNextStep;
+  outcome->NeedsInt64 = repeated & ~outcome->NeedsInt32;
 }
 
 static __attribute__((noinline)) Outcome ResampleByFloats(
@@ -249,7 +249,7 @@ static __attribute__((noinline)) uint ResampleByIntegers(
   return outcome.NeedsInt64;
 }
 
-// Resamples the samples that floats leave undecided, of some cells, given as bits, from beginX to endX.
+// Resamples the samples that floats leave undecided, of cells, given as bits, from beginX to endX.
 static __attribute__((noinline)) void ResampleUndecided(const PacketCandidates* c,
   const UndecidedSamples* undecidedSamples, uint wanted, int beginX, int endX, const SamplingMesh* mesh, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
@@ -286,14 +286,15 @@ static __attribute__((noinline)) void ResampleUndecided(const PacketCandidates* 
       }
       const Vector voxel = { x + p->OutputFirst[0], y + p->OutputFirst[1], z + p->OutputFirst[2] };
       const Candidates only = { voxel, voxel };
-      // In the closed passes, MakeCell tests the sample and not the whole cell.
-      if (!(begun >> lane & 1) || DEFORMVOLUME_IS_CLOSED(p->Pass))
+      // In passes with closed tetrahedra, MakeCell tests the sample and not the whole cell.
+      const int isClosed = DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass);
+      if (!(begun >> lane & 1) || isClosed)
       {
         keeping = KeepNeighbors(mesh, cell, c->Cells.Y, c->Cells.Z, near + lane);
         // A whole cell is not divided, so there are no views.
         const int hasSamples = MakeCell(&keeping, cell, c->Cells.Y, c->Cells.Z,
-                                 DEFORMVOLUME_IS_CLOSED(p->Pass) ? &only : &all, cells + lane, 0, output, p) &&
-          !IsPutOff(cells + lane, &only, output, p);
+                                 isClosed ? &only : &all, cells + lane, 0, output, p) &&
+          !IsDeferred(cells + lane, &only, output, p);
         begun |= 1u << lane;
         made = (made & ~(1u << lane)) | (uint)hasSamples << lane;
       }

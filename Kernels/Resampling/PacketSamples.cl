@@ -153,7 +153,7 @@ static void StoreFound(Found* found, const Packet* packet, Output* output,
   found->Count = 0;
 }
 
-// Keeps the samples of some cells, given as bits. voxels: output voxels. inverted: lanes with inverted tetrahedra.
+// Keeps the samples of cells, given as bits. voxels: output voxels. inverted: lanes with inverted tetrahedra.
 // kept: the number of kept samples, which replaces found->Count, because it can stay in a register. Stores all samples
 // if there are too many.
 static __attribute__((always_inline)) void KeepSamples(const Packet* packet, uint bits, INTS voxels,

@@ -45,7 +45,7 @@ static __attribute__((always_inline)) void WeighOrigin(
 
 // Stores a sample of a cell for arrays that need exact weights. The tetrahedron that holds the sample is found again,
 // in whole numbers.
-static SELDOM void StoreOtherArrays(
+static COLD void StoreOtherArrays(
   const Packet* packet, int lane, uint voxel, const KernelParameters* p ARRAY_PARAMETERS)
 {
   const uint width = p->OutputSize[0];
@@ -106,6 +106,6 @@ typedef struct
     v = fma(inner, weights->Scale, outer);                                                         \
     if (BITS != 32)                                                                                \
     {                                                                                              \
-      v = Least(Most(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) + ROUND_TO_INTEGER;        \
+      v = Min(Max(v, LANE_RANGE_LOW_##TYPE), LANE_RANGE_HIGH_##TYPE) + ROUND_TO_INTEGER;        \
     }                                                                                              \
   }

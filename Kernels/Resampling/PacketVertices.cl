@@ -18,7 +18,7 @@
 #define ODD (SLOTS * HALF_ROW)   // offset from an even vertex to the odd vertex in the same slot
 #define ROW (2 * ODD)
 #define ROWS (CELL_ROWS + 1)
-#define NOT_THERE -1e30f // x of slots outside the volume
+#define NO_VERTEX -1e30f // x of slots outside the volume
 #define NO_SOURCE 1e30f  // x of vertices without position
 #define STEP (1.0f / 256.0f) // of positions, in voxels
 
@@ -41,7 +41,7 @@ typedef struct
   int Z;
   int Parity;
   uint Borders; // flags as in RowFlags
-  uint Apart;
+  uint Split;
 } RowOfCells;
 #endif
 
@@ -63,7 +63,7 @@ typedef struct
   int Z;
   int Parity;
   int Border;
-  int Apart;
+  int Split;
 } Packet;
 
 #if LANES > 1
@@ -78,7 +78,7 @@ static __attribute__((always_inline)) void MakePacket(
 {
   const Packet made = { { row->Rows[0] + k, row->Rows[1] + k, row->Rows[2] + k, row->Rows[3] + k },
     side, row->X + 2 * k + side, row->Y, row->Z, row->Parity ^ side,
-    (row->Borders & PACKET_FLAGS(k)) != 0, (row->Apart & PACKET_FLAGS(k)) != 0 };
+    (row->Borders & PACKET_FLAGS(k)) != 0, (row->Split & PACKET_FLAGS(k)) != 0 };
   *packet = made;
 }
 #endif

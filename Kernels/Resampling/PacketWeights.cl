@@ -31,7 +31,7 @@
 // of 20, and (13 + 73 M) e k instead of (9 + 53 M). So d grows by a third (INEXACT_NORMALS).
 
 // Flatter cells are not decided by floats. For other cells d / D, the largest error of weights, is 1.5e-3 or 7.4e-3.
-#define MOST_BOUND_SCALE 4.35e-3f
+#define MAXIMUM_BOUND_SCALE 4.35e-3f
 
 // The central tetrahedra of a packet's cells.
 typedef struct
@@ -45,8 +45,8 @@ typedef struct
   FLOATS B13, B15, B16, B10, B23, B25, B26, B20, B43, B45, B46, B40, B73, B75, B76, B70;
   FLOATS Bound;  // d: the largest error of the weights
   INTS Inverted; // mirrored cells, all of whose tetrahedra are inverted
-  uint Turned;   // Inverted as bits, only for cells that fit
-  uint Nice;     // bits of cells whose samples floats can decide
+  uint InvertedBits; // Inverted as bits, only for simple cells
+  uint Decidable;    // bits of cells whose samples floats can decide
 } PacketFrame;
 
 // Finds a packet's normals and determinants, as if no cell were inverted.
@@ -96,18 +96,18 @@ static __attribute__((always_inline)) void FindNormals(const PacketCandidates* c
 }
 
 // Barycentric coordinates do not distinguish a cell from its mirror image, whose tetrahedra are all inverted: reverse
-// the normals of mirrored cells. fit: the cells to consider; lanes without a cell contain arbitrary values.
-static __attribute__((always_inline)) void TurnInverted(uint fit, PacketFrame* f)
+// the normals of mirrored cells. simple: the cells to consider; lanes without a cell contain arbitrary values.
+static __attribute__((always_inline)) void ReverseInverted(uint simple, PacketFrame* f)
 {
   f->Inverted = 0;
-  f->Turned = LaneBits(f->Determinant < 0.0f) & fit;
-  if (f->Turned)
+  f->InvertedBits = LaneBits(f->Determinant < 0.0f) & simple;
+  if (f->InvertedBits)
   {
     const INTS inverted = f->Determinant < 0.0f;
     f->Inverted = inverted;
-#define TURN(v) f->v = inverted ? -f->v : f->v;
-    TURN(N3x) TURN(N3y) TURN(N3z) TURN(N5x) TURN(N5y) TURN(N5z) TURN(N6x) TURN(N6y) TURN(N6z)
-    TURN(Determinant)
+#define REVERSE(v) f->v = inverted ? -f->v : f->v;
+    REVERSE(N3x) REVERSE(N3y) REVERSE(N3z) REVERSE(N5x) REVERSE(N5y) REVERSE(N5z) REVERSE(N6x) REVERSE(N6y) REVERSE(N6z)
+    REVERSE(Determinant)
   }
 }
 
@@ -137,31 +137,31 @@ static __attribute__((always_inline)) void FindCoordinates(const Packet* packet,
   COORDINATES(7)
 }
 
-// Finds the error bounds, and the cells that fit and are not too bent for these bounds.
+// Finds the error bounds, and the simple cells that are not too bent for these bounds.
 static __attribute__((always_inline)) void BoundErrors(
-  const PacketCandidates* c, uint fit, PacketFrame* f)
+  const PacketCandidates* c, uint simple, PacketFrame* f)
 {
-  const FLOATS leastOther = Least(Least(Least(Least(f->B13, f->B15), Least(f->B10, f->B45)),
-                                    Least(Least(f->B46, f->B40), Least(f->B23, f->B26))),
-    Least(Least(f->B20, f->B73), Least(f->B75, f->B76)));
-  const FLOATS mostOwn = Most(Most(f->B16, f->B43), Most(f->B25, f->B70));
-  const FLOATS leastOwn = Least(Least(f->B16, f->B43), Least(f->B25, f->B70));
+  const FLOATS leastOther = Min(Min(Min(Min(f->B13, f->B15), Min(f->B10, f->B45)),
+                                    Min(Min(f->B46, f->B40), Min(f->B23, f->B26))),
+    Min(Min(f->B20, f->B73), Min(f->B75, f->B76)));
+  const FLOATS mostOwn = Max(Max(f->B16, f->B43), Max(f->B25, f->B70));
+  const FLOATS minimumOwn = Min(Min(f->B16, f->B43), Min(f->B25, f->B70));
   const INTS tame =
     (mostOwn <= f->Determinant * -0.42f) & (leastOther >= f->Determinant * 0.35f);
   f->Bound = (tame ? (FLOATS)(6.5e-6f) : (FLOATS)(3.2e-5f)) * c->BoundScale;
-  f->Nice = fit &
+  f->Decidable = simple &
     LaneBits((leastOther >= f->Determinant * 0.015625f) & (mostOwn <= f->Determinant * -0.125f) &
-      (leastOwn >= f->Determinant * -2.0f) & (c->BoundScale * MOST_BOUND_SCALE < f->Determinant));
+      (minimumOwn >= f->Determinant * -2.0f) & (c->BoundScale * MAXIMUM_BOUND_SCALE < f->Determinant));
 }
 
-// fit: bits of the cells that are small and complete.
+// simple: bits of the cells that are small and complete.
 static __attribute__((always_inline)) void MakePacketFrame(
-  const PacketCandidates* c, uint fit, PacketFrame* frame)
+  const PacketCandidates* c, uint simple, PacketFrame* frame)
 {
   FindNormals(c, frame);
-  TurnInverted(fit, frame);
+  ReverseInverted(simple, frame);
   FindCoordinates(&c->Cells, frame);
-  BoundErrors(c, fit, frame);
+  BoundErrors(c, simple, frame);
 }
 
 // The factors that turn coordinates into weights.
@@ -192,14 +192,14 @@ static __attribute__((always_inline)) void WeighSamples(const PacketFrame* f,
   const FLOATS l5 = fma(rx, f->N5x, fma(ry, f->N5y, rz * f->N5z));
   const FLOATS l6 = fma(rx, f->N6x, fma(ry, f->N6y, rz * f->N6z));
   const FLOATS l0 = (f->Determinant - l3) - (l5 + l6);
-  const FLOATS u1 = Least(l6, 0.0f) * scales->Corner1;
-  const FLOATS u2 = Least(l5, 0.0f) * scales->Corner2;
-  const FLOATS u4 = Least(l3, 0.0f) * scales->Corner4;
-  const FLOATS u7 = Least(l0, 0.0f) * scales->Corner7;
-  w->T3 = fma(-u7, f->B73, fma(-u2, f->B23, fma(-u1, f->B13, Most(l3, 0.0f))));
-  w->T5 = fma(-u7, f->B75, fma(-u4, f->B45, fma(-u1, f->B15, Most(l5, 0.0f))));
-  w->T6 = fma(-u7, f->B76, fma(-u2, f->B26, fma(-u4, f->B46, Most(l6, 0.0f))));
-  w->T0 = fma(-u2, f->B20, fma(-u4, f->B40, fma(-u1, f->B10, Most(l0, 0.0f))));
+  const FLOATS u1 = Min(l6, 0.0f) * scales->Corner1;
+  const FLOATS u2 = Min(l5, 0.0f) * scales->Corner2;
+  const FLOATS u4 = Min(l3, 0.0f) * scales->Corner4;
+  const FLOATS u7 = Min(l0, 0.0f) * scales->Corner7;
+  w->T3 = fma(-u7, f->B73, fma(-u2, f->B23, fma(-u1, f->B13, Max(l3, 0.0f))));
+  w->T5 = fma(-u7, f->B75, fma(-u4, f->B45, fma(-u1, f->B15, Max(l5, 0.0f))));
+  w->T6 = fma(-u7, f->B76, fma(-u2, f->B26, fma(-u4, f->B46, Max(l6, 0.0f))));
+  w->T0 = fma(-u2, f->B20, fma(-u4, f->B40, fma(-u1, f->B10, Max(l0, 0.0f))));
   w->U1 = u1;
   w->U2 = u2;
   w->U4 = u4;
@@ -207,17 +207,17 @@ static __attribute__((always_inline)) void WeighSamples(const PacketFrame* f,
   w->Scale = scales->Central;
 }
 
-// Returns which of some cells, as bits, hold their sample. A cell holds the sample if three weights exceed
-// `decisive`, and does not if one is below -bound. undecidedByFloats: the cells in between.
+// Returns which of the given cells, as bits, hold their sample. A cell holds the sample if three weights exceed
+// `threshold`, and does not if one is below -bound. undecidedByFloats: the cells in between.
 static __attribute__((always_inline)) uint DecideByFloats(
-  const SampleWeights* w, uint some, FLOATS decisive, FLOATS bound, uint* undecidedByFloats)
+  const SampleWeights* w, uint cells, FLOATS threshold, FLOATS bound, uint* undecidedByFloats)
 {
-  const FLOATS lowA = Least(w->T3, w->T5), highA = Most(w->T3, w->T5);
-  const FLOATS lowB = Least(w->T6, w->T0), highB = Most(w->T6, w->T0);
-  const uint maybe = LaneBits(Least(lowA, lowB) >= -bound) & some;
+  const FLOATS lowA = Min(w->T3, w->T5), highA = Max(w->T3, w->T5);
+  const FLOATS lowB = Min(w->T6, w->T0), highB = Max(w->T6, w->T0);
+  const uint maybe = LaneBits(Min(lowA, lowB) >= -bound) & cells;
   // The second smallest weight decides: the weight opposite the corner may be 0.
-  const FLOATS second = Least(Most(lowA, lowB), Least(highA, highB));
-  const uint held = maybe & LaneBits(second > decisive);
+  const FLOATS second = Min(Max(lowA, lowB), Min(highA, highB));
+  const uint held = maybe & LaneBits(second > threshold);
   *undecidedByFloats = maybe & ~held;
   return held;
 }

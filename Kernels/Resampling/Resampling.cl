@@ -70,7 +70,7 @@ static Vector SamplePosition(Vector voxel)
 
 // Whether a sample is skipped, because its boundary distance is negative or it lies on the other side of the cut.
 // Distances are interpolated in the tetrahedron like values. weights: of the sample, from edge functions.
-static int IsLeftOut(const Cell* cell, int t, const long* weights)
+static int IsClipped(const Cell* cell, int t, const long* weights)
 {
 #if HAS_CUT
   if (cell->Side >= 0 && (WeighDistances(cell->Cut.Distances, t, weights) < 0) != cell->Side)
@@ -104,7 +104,7 @@ static __attribute__((noinline)) int IsWrittenBefore(const SamplingMesh* mesh, c
       long weights[4];
       Evaluate(&f, SamplePosition(voxel), weights);
       if (RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p) == OWNER &&
-        !IsLeftOut(part, t, weights))
+        !IsClipped(part, t, weights))
       {
         return 1;
       }
@@ -150,14 +150,14 @@ static OUTLINED void Write(const SamplingMesh* mesh, const Cell* cell, int t, co
   long volume, Sample* s, Vector voxel, int role, Output* output,
   const KernelParameters* p ARRAY_PARAMETERS)
 {
-  if (IsLeftOut(cell, t, weights))
+  if (IsClipped(cell, t, weights))
   {
     return;
   }
   const int outputX = voxel.x - p->OutputFirst[0];
   const int outputY = voxel.y - p->OutputFirst[1];
   const int outputZ = voxel.z - p->OutputFirst[2];
-  if (role == HOLDER)
+  if (role == ON_BOUNDARY)
   {
     if (p->Pass == DEFORMVOLUME_PASS_OWNERS)
     {
@@ -254,8 +254,8 @@ static long CountCandidates(Candidates c)
 static OUTLINED void ResampleUprightCell(const SamplingMesh* mesh, const Cell* cell, Candidates c,
   Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
-  // In the closed passes, all tetrahedra that hold a sample write it in turn.
-  const int closed = DEFORMVOLUME_IS_CLOSED(p->Pass);
+  // In passes with closed tetrahedra, all tetrahedra that hold a sample write it in turn.
+  const int closed = DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass);
   const EdgeFunctions central = EdgeFunctionsOf(cell, 4);
   Sample ofCentral;
   ofCentral.Volume = 0;
@@ -266,7 +266,7 @@ static OUTLINED void ResampleUprightCell(const SamplingMesh* mesh, const Cell* c
     long behind[4];
     Evaluate(&central, sample, behind);
     const int role = RoleOf(mesh, cell->X, cell->Y, cell->Z, 4, behind, &central, cell->State, p);
-    if (role != STRANGER)
+    if (role != OUTSIDE)
     {
       Write(
         mesh, cell, 4, behind, central.Volume, &ofCentral, voxel, role, output, p ARRAY_ARGUMENTS);
@@ -287,7 +287,7 @@ static OUTLINED void ResampleUprightCell(const SamplingMesh* mesh, const Cell* c
       Evaluate(&corner, sample, weights);
       const int roleOfCorner =
         RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &corner, cell->State, p);
-      if (roleOfCorner != STRANGER)
+      if (roleOfCorner != OUTSIDE)
       {
         Sample s;
         s.Volume = 0;
@@ -303,7 +303,7 @@ static OUTLINED void ResampleUprightCell(const SamplingMesh* mesh, const Cell* c
 }
 
 // Shorter rows are not worth clipping.
-#define LEAST_CLIPPED_ROW 6
+#define MINIMUM_CLIPPED_ROW 6
 // The tolerance for the ends of a clipped row, in samples. The ends are found in single precision, with an error of
 // less than 2^-20 of their distance from the first sample, which is at most MAXIMUM_STRETCH.
 #define CLIP_TOLERANCE (1.0f / 64.0f)
@@ -333,7 +333,7 @@ static OUTLINED void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* c
   Sample s;
   s.Volume = 0;
   const long samples = candidates->High.x - candidates->Low.x + 1;
-  const int clipped = samples >= LEAST_CLIPPED_ROW;
+  const int clipped = samples >= MINIMUM_CLIPPED_ROW;
   long steps[4];
   float zeros[4];
   for (int k = 0; k < 4; ++k)
@@ -361,7 +361,7 @@ static OUTLINED void ResampleTetrahedron(const SamplingMesh* mesh, const Cell* c
       for (int i = row.x; i <= row.y; ++i)
       {
         const int role = RoleOf(mesh, cell->X, cell->Y, cell->Z, t, weights, &f, cell->State, p);
-        if (role != STRANGER)
+        if (role != OUTSIDE)
         {
           voxel.x = candidates->Low.x + i;
           Write(mesh, cell, t, weights, f.Volume, &s, voxel, role, output, p ARRAY_ARGUMENTS);
@@ -418,7 +418,7 @@ static int AreUnsettled(Candidates c, const Output* output, const KernelParamete
 }
 
 // For cells with more candidates than this, it is faster to resample one tetrahedron after the other.
-#define MOST_ONE_BY_ONE 128
+#define MAXIMUM_ONE_BY_ONE 128
 
 // Resamples the samples of a cell by the faster of the two methods. all: the wanted samples.
 static OUTLINED void ResampleSamples(const SamplingMesh* mesh, const Cell* cell,
@@ -433,7 +433,7 @@ static OUTLINED void ResampleSamples(const SamplingMesh* mesh, const Cell* cell,
     {
       return;
     }
-    if (CountCandidates(c) <= MOST_ONE_BY_ONE)
+    if (CountCandidates(c) <= MAXIMUM_ONE_BY_ONE)
     {
       ResampleUprightCell(mesh, cell, c, output, p ARRAY_ARGUMENTS);
       return;
@@ -593,7 +593,7 @@ static OUTLINED int MakeCell(const SamplingMesh* mesh, int x, int y, int z, cons
     whole &= ~cell->Cut.Divided;
   }
 #endif
-  if (DEFORMVOLUME_IS_CLOSED(p->Pass) &&
+  if (DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(p->Pass) &&
     !AreUnsettled(FindCandidates(cell->Low, cell->High, 0, all), output, p))
   {
     return 0;
@@ -656,14 +656,14 @@ static Candidates PieceOf(Candidates c, int piece)
 }
 
 // Smaller boxes, in 1/256 voxel, have at most as many samples as a piece: 40 * 40 * 40.
-#define LEAST_LARGE_SIZE (39 * 256)
+#define MINIMUM_LARGE_SIZE (39 * 256)
 
 // Whether the cell is large and was added to the list of large cells.
-static int IsPutOff(
+static int IsDeferred(
   const Cell* cell, const Candidates* all, Output* output, const KernelParameters* p)
 {
   const Vector size = Subtract(cell->High, cell->Low);
-  if (max(size.x, max(size.y, size.z)) < LEAST_LARGE_SIZE)
+  if (max(size.x, max(size.y, size.z)) < MINIMUM_LARGE_SIZE)
   {
     return 0;
   }
@@ -688,7 +688,7 @@ static OUTLINED void ResampleCell(const SamplingMesh* mesh, int x, int y, int z,
   const Candidates* all, Output* output, const KernelParameters* p ARRAY_PARAMETERS)
 {
   Cell cell, views[2];
-  if (MakeCell(mesh, x, y, z, all, &cell, views, output, p) && !IsPutOff(&cell, all, output, p))
+  if (MakeCell(mesh, x, y, z, all, &cell, views, output, p) && !IsDeferred(&cell, all, output, p))
   {
     ResampleSamples(mesh, &cell, all, output, p ARRAY_ARGUMENTS);
   }

@@ -120,8 +120,9 @@ typedef struct
 #define DEFORMVOLUME_PASS_MARK 2
 #define DEFORMVOLUME_PASS_WINNER 3 // write the voxels of which this tetrahedron is the winner
 #define DEFORMVOLUME_PASS_COUNT 4  // count the tetrahedra that write each voxel; write nothing
-// Whether the pass uses all tetrahedra that contain a voxel, not only the one that writes it.
-#define DEFORMVOLUME_IS_CLOSED(pass)                                                               \
+// Whether the pass uses closed tetrahedra: all that contain a voxel, including their boundaries, and
+// not only the one that owns it by the fill rule.
+#define DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(pass)                                                  \
   ((pass) == DEFORMVOLUME_PASS_MARK || (pass) == DEFORMVOLUME_PASS_WINNER)
 // Whether the pass writes values.
 #define DEFORMVOLUME_IS_WRITING(pass) ((pass) != DEFORMVOLUME_PASS_MARK)
