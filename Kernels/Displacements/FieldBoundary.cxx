@@ -22,6 +22,130 @@ namespace
 // approximated as linear.
 constexpr double FieldPiece = 4.0;
 
+// The grid of a field, in continuous indices of the volume.
+struct FieldGrid
+{
+  explicit FieldGrid(const DisplacementField& field)
+    : ToField(GetVoxelsToField(field))
+    , ToIndex(glm::inverse(this->ToField))
+    , Offset(field.IndexToField[3], field.IndexToField[7], field.IndexToField[11])
+    , Last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1)
+  {
+  }
+
+  // Returns the index in the volume of a point of the field.
+  glm::dvec3 GetIndex(const glm::dvec3& point) const
+  {
+    return this->ToIndex * (point - this->Offset);
+  }
+
+  glm::dmat3 ToField;
+  glm::dmat3 ToIndex;
+  glm::dvec3 Offset;
+  glm::dvec3 Last; // the last point on each axis
+};
+
+// Returns two triangles on each side of the field.
+std::vector<Triangle> MakeSides(const FieldGrid& grid)
+{
+  std::vector<Triangle> sides;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (int side = 0; side < 2; ++side)
+    {
+      std::array<glm::dvec3, 4> corners;
+      for (int corner = 0; corner < 4; ++corner)
+      {
+        glm::dvec3 point;
+        point[axis] = side * grid.Last[axis];
+        point[(axis + 1) % 3] = (corner & 1) * grid.Last[(axis + 1) % 3];
+        point[(axis + 2) % 3] = (corner >> 1) * grid.Last[(axis + 2) % 3];
+        corners[static_cast<std::size_t>(corner)] = grid.GetIndex(point);
+      }
+      sides.push_back({ { corners[0], corners[1], corners[2] } });
+      sides.push_back({ { corners[3], corners[1], corners[2] } });
+    }
+  }
+  return sides;
+}
+
+// A lattice with cells of about the size of a piece. A cell of the lattice is a fraction of a cell
+// of the field, or consists of several such cells.
+class PieceLattice
+{
+public:
+  explicit PieceLattice(const FieldGrid& grid)
+    : Grid(grid)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double length = glm::length(grid.ToIndex[axis]);
+      this->Step[axis] = length > FieldPiece ? 1.0 / std::round(length / FieldPiece)
+                                             : std::max(1.0, std::floor(FieldPiece / length));
+      this->Cells[axis] = std::max<std::int64_t>(
+        1, std::llround(std::ceil(grid.Last[axis] / this->Step[axis] - 1e-9)));
+    }
+  }
+
+  // Adds the numbers of the lattice cells that meet a cell of the volume.
+  void AddNumbers(const glm::dvec3& cellOfVolume, std::vector<std::int64_t>& numbers) const
+  {
+    const glm::dmat3& toField = this->Grid.ToField;
+    const glm::dvec3 middle = (toField * (cellOfVolume + 0.5) + this->Grid.Offset) / this->Step;
+    const glm::dvec3 margin = (0.5 + BoundaryTolerance) *
+      (glm::abs(toField[0]) + glm::abs(toField[1]) + glm::abs(toField[2])) / this->Step;
+    const glm::dvec3 least(0.0);
+    const glm::dvec3 most(this->Cells);
+    const glm::i64vec3 first(glm::clamp(glm::floor(middle - margin), least, most));
+    const glm::i64vec3 end(glm::clamp(glm::floor(middle + margin) + 1.0, least, most));
+    for (std::int64_t k = first.z; k < end.z; ++k)
+    {
+      for (std::int64_t j = first.y; j < end.y; ++j)
+      {
+        for (std::int64_t i = first.x; i < end.x; ++i)
+        {
+          numbers.push_back((k * this->Cells.y + j) * this->Cells.x + i);
+        }
+      }
+    }
+  }
+
+  // Calls add with each of the five pieces of a lattice cell.
+  template <typename Add>
+  void AddPieces(std::int64_t number, const Add& add) const
+  {
+    static constexpr int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+    const glm::i64vec3 cell(number % this->Cells.x, number / this->Cells.x % this->Cells.y,
+      number / this->Cells.x / this->Cells.y);
+    std::array<glm::dvec3, 8> points;
+    for (int vertex = 0; vertex < 8; ++vertex)
+    {
+      const auto offset = vertex ^ DEFORMVOLUME_MIRROR(cell.x, cell.y, cell.z);
+      const glm::i64vec3 corner = cell + glm::i64vec3(offset & 1, offset >> 2 & 1, offset >> 1 & 1);
+      points[static_cast<std::size_t>(vertex)] =
+        glm::min(glm::dvec3(corner) * this->Step, this->Grid.Last);
+    }
+    for (const auto& tetrahedron : split)
+    {
+      MeshBoundary::Piece piece;
+      piece.Tetrahedron = 0;
+      for (std::size_t k = 0; k < 4; ++k)
+      {
+        const glm::dvec3& point = points[static_cast<std::size_t>(tetrahedron[k])];
+        piece.Rest[k] = this->Grid.GetIndex(point);
+        piece.Weights[k] = { { static_cast<float>(point.x), static_cast<float>(point.y),
+          static_cast<float>(point.z), 0.0F } };
+      }
+      add(piece);
+    }
+  }
+
+private:
+  const FieldGrid& Grid;
+  glm::dvec3 Step; // size of a cell, in steps between points of the field
+  glm::i64vec3 Cells;
+};
+
 } // namespace
 
 MeshBoundary FindFieldBoundary(
@@ -32,113 +156,29 @@ MeshBoundary FindFieldBoundary(
   {
     return MeshBoundary();
   }
-  const auto& m = field.IndexToField;
-  const glm::dmat3 toField = GetVoxelsToField(field);
-  const glm::dmat3 toIndex = glm::inverse(toField);
-  if (!(std::abs(glm::determinant(toField)) > 0.0))
+  const FieldGrid grid(field);
+  if (!(std::abs(glm::determinant(grid.ToField)) > 0.0))
   {
     return MeshBoundary();
-  }
-  const glm::dvec3 offset(m[3], m[7], m[11]);
-  const auto toVolume = [&](const glm::dvec3& point) { return toIndex * (point - offset); };
-
-  // Two triangles on each side of the field.
-  std::vector<Triangle> faces;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    for (int side = 0; side < 2; ++side)
-    {
-      std::array<glm::dvec3, 4> corners;
-      for (int corner = 0; corner < 4; ++corner)
-      {
-        glm::dvec3 point;
-        point[axis] = side * (size[static_cast<std::size_t>(axis)] - 1);
-        point[(axis + 1) % 3] = (corner & 1) * (size[static_cast<std::size_t>((axis + 1) % 3)] - 1);
-        point[(axis + 2) % 3] =
-          (corner >> 1) * (size[static_cast<std::size_t>((axis + 2) % 3)] - 1);
-        corners[static_cast<std::size_t>(corner)] = toVolume(point);
-      }
-      faces.push_back({ { corners[0], corners[1], corners[2] } });
-      faces.push_back({ { corners[3], corners[1], corners[2] } });
-    }
   }
   BoundaryFinder finder(part, whole);
   // A side of the field that lies on voxels is no boundary, since cells end there. Kernels treat
   // voxels up to FieldTolerance outside the field as inside.
-  const double finest =
-    std::min({ glm::length(toIndex[0]), glm::length(toIndex[1]), glm::length(toIndex[2]) });
-  if (!finder.Cross(faces, std::min(BorderTolerance, 0.5 * FieldTolerance * finest)))
+  const double finest = std::min(
+    { glm::length(grid.ToIndex[0]), glm::length(grid.ToIndex[1]), glm::length(grid.ToIndex[2]) });
+  if (!finder.Cross(MakeSides(grid), std::min(BorderTolerance, 0.5 * FieldTolerance * finest)))
   {
     return MeshBoundary();
   }
 
-  // A lattice with cells of about the size of a piece. A cell of the lattice is a fraction of a
-  // cell of the field, or consists of several such cells.
-  glm::dvec3 step; // size of a lattice cell, in steps between points of the field
-  glm::i64vec3 cells;
-  glm::dvec3 last;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double length = glm::length(toIndex[axis]);
-    step[axis] = length > FieldPiece ? 1.0 / std::round(length / FieldPiece)
-                                     : std::max(1.0, std::floor(FieldPiece / length));
-    last[axis] = size[static_cast<std::size_t>(axis)] - 1;
-    cells[axis] =
-      std::max<std::int64_t>(1, std::llround(std::ceil(last[axis] / step[axis] - 1e-9)));
-  }
-  // The lattice cells that meet cells near the boundary.
-  std::vector<std::int64_t> numbers;
-  finder.ForEachNear(
-    [&](std::int64_t x, std::int64_t y, std::int64_t z)
-    {
-      const glm::dvec3 middle = (toField * (glm::dvec3(x, y, z) + 0.5) + offset) / step;
-      const glm::dvec3 margin = (0.5 + BoundaryTolerance) *
-        (glm::abs(toField[0]) + glm::abs(toField[1]) + glm::abs(toField[2])) / step;
-      const glm::i64vec3 first(
-        glm::clamp(glm::floor(middle - margin), glm::dvec3(0.0), glm::dvec3(cells)));
-      const glm::i64vec3 end(
-        glm::clamp(glm::floor(middle + margin) + 1.0, glm::dvec3(0.0), glm::dvec3(cells)));
-      for (std::int64_t k = first.z; k < end.z; ++k)
-      {
-        for (std::int64_t j = first.y; j < end.y; ++j)
-        {
-          for (std::int64_t i = first.x; i < end.x; ++i)
-          {
-            numbers.push_back((k * cells.y + j) * cells.x + i);
-          }
-        }
-      }
-    });
+  const PieceLattice lattice(grid);
+  std::vector<std::int64_t> numbers; // of lattice cells that meet cells near the boundary
+  finder.ForEachNear([&](std::int64_t x, std::int64_t y, std::int64_t z)
+    { lattice.AddNumbers(glm::dvec3(x, y, z), numbers); });
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  return finder.Collect(numbers.size(),
-    [&](std::size_t number, const auto& add)
-    {
-      static constexpr int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-      const std::int64_t i = numbers[number];
-      const glm::i64vec3 cell(i % cells.x, i / cells.x % cells.y, i / cells.x / cells.y);
-      std::array<glm::dvec3, 8> points;
-      for (int vertex = 0; vertex < 8; ++vertex)
-      {
-        const auto offset = vertex ^ DEFORMVOLUME_MIRROR(cell.x, cell.y, cell.z);
-        const glm::i64vec3 corner =
-          cell + glm::i64vec3(offset & 1, offset >> 2 & 1, offset >> 1 & 1);
-        points[static_cast<std::size_t>(vertex)] = glm::min(glm::dvec3(corner) * step, last);
-      }
-      for (const auto& tetrahedron : split)
-      {
-        MeshBoundary::Piece piece;
-        piece.Tetrahedron = 0;
-        for (std::size_t k = 0; k < 4; ++k)
-        {
-          const glm::dvec3& point = points[static_cast<std::size_t>(tetrahedron[k])];
-          piece.Rest[k] = toVolume(point);
-          piece.Weights[k] = { { static_cast<float>(point.x), static_cast<float>(point.y),
-            static_cast<float>(point.z), 0.0F } };
-        }
-        add(piece);
-      }
-    });
+  return finder.Collect(
+    numbers.size(), [&](std::size_t i, const auto& add) { lattice.AddPieces(numbers[i], add); });
 }
 
 } // namespace deformvolume
