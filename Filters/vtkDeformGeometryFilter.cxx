@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeformGeometryFilter.h"
 
+#include "DeformationChoice.h"
 #include "Error.h"
 #include "FieldPointMap.h"
 #include "InputUpdate.h"
@@ -17,7 +18,6 @@
 #include "TransformedArrays.h"
 #include "VTKThreads.h"
 #include "VectorArray.h"
-#include "VectorChoice.h"
 #include "WorldDeformation.h"
 
 #include "vtkCellData.h"
@@ -136,7 +136,7 @@ void vtkDeformGeometryFilter::vtkInternals::ReadDeformation(
   {
     if (this->Self->GetNumberOfInputConnections(2) > 0)
     {
-      deformvolume::ThrowRestAlone(2, 1);
+      deformvolume::ThrowRestWithoutDeformation(2, 1);
     }
     this->Map = nullptr;
     return;

@@ -3,9 +3,9 @@
 
 #include "vtkDeformVolumeFilterInternals.h"
 
+#include "DeformationChoice.h"
 #include "Device.h"
 #include "VTKThreads.h"
-#include "VectorChoice.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"

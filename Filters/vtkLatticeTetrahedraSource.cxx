@@ -29,6 +29,7 @@
 #include <string>
 
 using deformvolume::Error;
+using deformvolume::FiveTetrahedra;
 
 vtkStandardNewMacro(vtkLatticeTetrahedraSource);
 
@@ -153,7 +154,6 @@ vtkIdType CountTetrahedra(const std::array<int, 3>& nodes)
 vtkIdType* WriteCell(
   int x, int y, int z, const std::array<int, 3>& nodes, bool isMirrored, vtkIdType* vertex)
 {
-  static const int table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
   const vtkIdType rowLength = nodes[0];
   const vtkIdType slabLength = rowLength * nodes[1];
   vtkIdType corners[8];
@@ -168,10 +168,10 @@ vtkIdType* WriteCell(
   for (int t = 0; t < 5; ++t)
   {
     const bool upright = (t < 4) == cornersUpright;
-    *vertex++ = corners[table[t][0]];
-    *vertex++ = corners[table[t][1]];
-    *vertex++ = corners[table[t][upright ? 2 : 3]];
-    *vertex++ = corners[table[t][upright ? 3 : 2]];
+    *vertex++ = corners[FiveTetrahedra[t][0]];
+    *vertex++ = corners[FiveTetrahedra[t][1]];
+    *vertex++ = corners[FiveTetrahedra[t][upright ? 2 : 3]];
+    *vertex++ = corners[FiveTetrahedra[t][upright ? 3 : 2]];
   }
   return vertex;
 }

@@ -3,6 +3,7 @@
 
 #include "vtkVolumeEditAlgorithmInternals.h"
 
+#include "DeformationChoice.h"
 #include "FiveTetrahedra.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
@@ -10,7 +11,6 @@
 #include "PipelineGeometry.h"
 #include "ProgressReport.h"
 #include "VTKThreads.h"
-#include "VectorChoice.h"
 
 #include "vtkCellData.h"
 #include "vtkDataObject.h"
@@ -106,7 +106,7 @@ const deformvolume::VertexPositions& vtkVolumeEditAlgorithm::vtkEdits::GetVertic
 {
   if (vtkDataObject::GetData(input[3]) && !vtkDataObject::GetData(input[2]))
   {
-    deformvolume::ThrowRestAlone(3, 2);
+    deformvolume::ThrowRestWithoutDeformation(3, 2);
   }
   const deformvolume::DeformationSource source =
     deformvolume::ChooseDeformation(vtkDataObject::GetData(input[2]),

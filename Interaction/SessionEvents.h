@@ -24,19 +24,19 @@ struct SessionEvent
     BEGIN_GRAB, // handle, x, y, z
     MOVE_GRAB,  // handle, x, y, z
     END_GRAB,   // handle
-    HOLD,       // handle
+    HOLD_GRAB,  // handle
     RELEASE,    // handle
     CUT,        // number of points, their coordinates, then the point ids of each triangle
     CARVE,      // 1 for a new stroke, x, y, z, radius
     UNDO,
     REDO,
     RESET,
-    MODEL,         // one of vtkDeformVolumeSession::Models
-    HANDLE_RADIUS, // world units
-    RELAXATION,    // sweeps
-    LATTICE,       // maximum number of nodes on an axis
-    UNDO_MEMORY,   // bytes
-    STEP           // one step of the simulation
+    MODEL,             // one of vtkDeformVolumeSession::Models
+    HANDLE_RADIUS,     // world units
+    RELAXATION_SWEEPS, // sweeps
+    NUMBER_OF_NODES,   // maximum number of nodes on an axis
+    UNDO_MEMORY,       // bytes
+    STEP               // one step of the simulation
   };
   KindType Kind = STEP;
   std::vector<double> Numbers;

@@ -73,7 +73,7 @@ bool HasPossibleIndex(vtkImageData* volume, const glm::dvec3& position)
   return index.x <= farthest && index.y <= farthest && index.z <= farthest;
 }
 
-int GetWhole(const SessionEvent& event, int least, int most, const char* name)
+int GetInteger(const SessionEvent& event, int least, int most, const char* name)
 {
   const double number = event.Numbers[0];
   if (!(number >= least) || number > most || number != std::floor(number))
@@ -176,8 +176,8 @@ void SessionPipeline::SetInputs(vtkImageData* volume, vtkUnstructuredGrid* mesh)
 SessionEvents SessionPipeline::GetSettings() const
 {
   return { { SessionEvent::HANDLE_RADIUS, { this->HandleRadius } },
-    { SessionEvent::RELAXATION, { static_cast<double>(this->RelaxationSweeps) } },
-    { SessionEvent::LATTICE, { static_cast<double>(this->NumberOfNodes) } },
+    { SessionEvent::RELAXATION_SWEEPS, { static_cast<double>(this->RelaxationSweeps) } },
+    { SessionEvent::NUMBER_OF_NODES, { static_cast<double>(this->NodesPerAxis) } },
     { SessionEvent::UNDO_MEMORY, { this->UndoMemory } } };
 }
 
@@ -200,13 +200,13 @@ void SessionPipeline::Apply(const SessionEvent& event)
 {
   const bool isOfHistory = event.Kind == SessionEvent::UNDO || event.Kind == SessionEvent::REDO ||
     event.Kind == SessionEvent::RESET;
-  if (this->IsToRebuild && !isOfHistory) // one rebuild after several undo events
+  if (this->NeedsRebuild && !isOfHistory) // one rebuild after several undo events
   {
     this->Rebuild();
   }
   this->IsStroke = this->IsStroke && event.Kind == SessionEvent::CARVE;
   const bool isOfGrab = event.Kind == SessionEvent::MOVE_GRAB ||
-    event.Kind == SessionEvent::END_GRAB || event.Kind == SessionEvent::HOLD;
+    event.Kind == SessionEvent::END_GRAB || event.Kind == SessionEvent::HOLD_GRAB;
   if (isOfGrab && this->RejectedHandles.count(event.Numbers[0]) > 0)
   {
     return; // the caller may not know yet that the handle could not be grabbed
@@ -224,7 +224,7 @@ void SessionPipeline::Apply(const SessionEvent& event)
       drag.IsGrabbed = drag.IsHeld = false;
       return;
     }
-    case SessionEvent::HOLD:
+    case SessionEvent::HOLD_GRAB:
       this->FindHandle(event.Numbers[0], true).IsGrabbed = false;
       return;
     case SessionEvent::RELEASE:
@@ -244,25 +244,26 @@ void SessionPipeline::Apply(const SessionEvent& event)
     case SessionEvent::RESET:
       return this->Reset();
     case SessionEvent::MODEL:
-      return this->SetModel(GetWhole(event, Session::NONE, Session::FINITE_ELEMENTS, "The model"));
+      return this->SetModel(
+        GetInteger(event, Session::NONE, Session::FINITE_ELEMENTS, "The model"));
     case SessionEvent::HANDLE_RADIUS:
       if (!(event.Numbers[0] >= 0.0))
       {
         throw std::runtime_error(
-          "The handle radius is " + Format(event.Numbers[0]) + ". Set 0 or more.");
+          "The handle radius is " + FormatShort(event.Numbers[0]) + ". Set 0 or more.");
       }
       this->HandleRadius = event.Numbers[0];
       return;
-    case SessionEvent::RELAXATION:
-      this->RelaxationSweeps = GetWhole(event, 0, 10000, "The number of relaxation sweeps");
+    case SessionEvent::RELAXATION_SWEEPS:
+      this->RelaxationSweeps = GetInteger(event, 0, 10000, "The number of relaxation sweeps");
       return;
-    case SessionEvent::LATTICE:
-      return this->SetLattice(GetWhole(event, 2, 100, "The number of nodes on an axis"));
+    case SessionEvent::NUMBER_OF_NODES:
+      return this->SetLattice(GetInteger(event, 2, 100, "The number of nodes on an axis"));
     case SessionEvent::UNDO_MEMORY:
       if (!(event.Numbers[0] >= 0.0))
       {
         throw std::runtime_error(
-          "The memory for undo is " + Format(event.Numbers[0]) + " bytes. Set 0 or more.");
+          "The memory for undo is " + FormatShort(event.Numbers[0]) + " bytes. Set 0 or more.");
       }
       this->UndoMemory = event.Numbers[0];
       this->LimitStates();
@@ -286,7 +287,9 @@ glm::dvec3 SessionPipeline::FindRestPosition(const glm::dvec3& deformed, const S
   {
     return found;
   }
-  glm::dvec3 shown; // of the voxel; if `found` lies on the same side, it is more accurate
+  // The rest position of the visible voxel. `found` is more accurate, but may lie on the hidden
+  // side of the cut.
+  glm::dvec3 shown;
   output->GetPointData()->GetArray("RestPosition")->GetTuple(voxel, &shown.x);
   return glm::distance(found, shown) <= GetLargestVoxelSize(this->Volume) ? found : shown;
 }
@@ -322,7 +325,7 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   drag.Rest = isPossible ? this->FindRestPosition(position, {}) : position;
   if (!isPossible || !MoveIntoVolume(this->Volume, drag.Rest))
   {
-    throw std::runtime_error("The grabbed position " + Format(&position.x) +
+    throw std::runtime_error("The grabbed position " + FormatShort(&position.x) +
       " is outside the deformed volume. Grab a position within it.");
   }
   if (this->GetElastic())
@@ -435,7 +438,7 @@ void SessionPipeline::Cut(const SessionEvent& event)
       {
         elastic->UndoCut();
       }
-      this->StepBack(); // the output of the elastic filter is empty
+      this->RestoreLastPossible(); // the output of the elastic filter is empty
     }
     throw;
   }
@@ -448,7 +451,7 @@ void SessionPipeline::CutMesh(
   vtkElasticDeformation* elastic, vtkPolyData* sheet, const Actions& held, Action& cut)
 {
   const vtkIdType before = elastic->GetNumberOfCuts();
-  cut.NumberOfNodes = this->GetDeformation()->GetNumberOfPoints();
+  cut.NodesBeforeCut = this->GetDeformation()->GetNumberOfPoints();
   elastic->SetSheetData(sheet);
   this->UpdateModel(held);
   cut.HasSplit = elastic->GetNumberOfCuts() > before;
@@ -464,7 +467,7 @@ void SessionPipeline::Carve(const SessionEvent& event)
   if (!(event.Numbers[4] > 0.0))
   {
     throw std::runtime_error(
-      "The carving radius is " + Format(event.Numbers[4]) + ". Set a radius greater than 0.");
+      "The carving radius is " + FormatShort(event.Numbers[4]) + ". Set a radius greater than 0.");
   }
   if (isNew)
   {

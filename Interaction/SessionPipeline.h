@@ -65,7 +65,8 @@ public:
   };
   /// Returns the deformed volume. Throws std::runtime_error if a filter fails.
   vtkImageData* Resample(const Sampling& sampling);
-  /// The same. If sides of a cut may overlap, the output has rest positions.
+  /// Returns the deformed volume. If sides of a cut may overlap, it has the array RestPosition,
+  /// which FindRestPosition() needs.
   vtkImageData* ResampleForSearch(const Sampling& sampling);
 
   vtkImageData* GetVolume() { return this->Volume; }
@@ -122,8 +123,8 @@ private:
     bool IsHeld = false;
     vtkSmartPointer<vtkPolyData> RestSheet;
     int NumberOfEdits = 1;
-    bool HasSplit = false;       // whether a cut has split the mesh
-    vtkIdType NumberOfNodes = 0; // of the mesh before the cut
+    bool HasSplit = false; // whether a cut has split the mesh
+    vtkIdType NodesBeforeCut = 0;
     int Model = 0;
     int FormerModel = 0;
     // States of ChainMail before the action, and when it was undone (SaveState); -1: not saved.
@@ -136,7 +137,7 @@ private:
   void TryBeginGrab(double handle, const glm::dvec3& position);
   // Throws if a handle holds no node, or only those of other handles.
   void CheckNodes(const Action& drag) const;
-  void StepBack();
+  void RestoreLastPossible();
   Action& FindHandle(double handle, bool isGrabbed);
   void Release(double handle);
   void Cut(const SessionEvent& event);
@@ -174,7 +175,7 @@ private:
   void Connect();
   void MakeUndeformedMesh();
   void MakeRestMesh();
-  bool FindMotion();
+  bool UpdateMotion();
   vtkAlgorithm* GetModelFilter();
   vtkElasticDeformation* GetElastic();
 
@@ -197,7 +198,7 @@ private:
   bool HasWarnedOfPadding = false;
 
   int Model = 0;
-  int NumberOfNodes = 7;
+  int NodesPerAxis = 7;
   double HandleRadius = 0.0;
   int RelaxationSweeps = 5;
   double UndoMemory = 1073741824.0;
@@ -207,7 +208,7 @@ private:
   Actions Undone;
   std::vector<double> LastVectors; // displacements of the mesh after the last step
   int QuietSteps = 0;
-  bool IsToRebuild = false; // whether the body must be rebuilt from rest before it is used
+  bool NeedsRebuild = false; // whether the body must be rebuilt from rest before it is used
 };
 
 } // namespace deformvolume

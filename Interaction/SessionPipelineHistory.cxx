@@ -41,8 +41,8 @@ void SessionPipeline::AddAction(Action action)
 
 vtkIdType SessionPipeline::SaveState()
 {
-  return this->Model == Session::CHAIN_MAIL && !this->IsToRebuild ? this->ChainMail->SaveState()
-                                                                  : -1;
+  return this->Model == Session::CHAIN_MAIL && !this->NeedsRebuild ? this->ChainMail->SaveState()
+                                                                   : -1;
 }
 
 // Restores the positions of all voxels. Without a saved state, the body is rebuilt from rest with
@@ -50,7 +50,7 @@ vtkIdType SessionPipeline::SaveState()
 void SessionPipeline::RestoreState(vtkIdType state)
 {
   this->Connect();
-  this->IsToRebuild = this->Model != Session::CHAIN_MAIL || !this->ChainMail->RestoreState(state);
+  this->NeedsRebuild = this->Model != Session::CHAIN_MAIL || !this->ChainMail->RestoreState(state);
 }
 
 void SessionPipeline::ForgetStates(Action& action)
@@ -122,22 +122,22 @@ void SessionPipeline::Undo()
   {
     case Action::CUT:
       this->UndoEdits(this->CutFilter, 1);
-      if (elastic && action.HasSplit && !this->IsToRebuild)
+      if (elastic && action.HasSplit && !this->NeedsRebuild)
       {
         const Actions held = this->GetHeld();
         // After a rebuild, handles may hold nodes that this cut has made.
-        this->IsToRebuild = std::any_of(held.begin(), held.end(),
+        this->NeedsRebuild = std::any_of(held.begin(), held.end(),
           [&](const Action& drag)
           {
             return std::any_of(drag.Nodes.begin(), drag.Nodes.end(),
-              [&](const NodeOfHandle& node) { return node.Id >= action.NumberOfNodes; });
+              [&](const NodeOfHandle& node) { return node.Id >= action.NodesBeforeCut; });
           });
-        if (!this->IsToRebuild)
+        if (!this->NeedsRebuild)
         {
           elastic->UndoCut();
-          this->IsToRebuild = true; // if the update fails
+          this->NeedsRebuild = true; // if the update fails
           this->UpdateModel(held);
-          this->IsToRebuild = false;
+          this->NeedsRebuild = false;
         }
       }
       break;

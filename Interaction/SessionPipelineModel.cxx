@@ -85,7 +85,7 @@ void SessionPipeline::MakeRestMesh()
   this->RestMesh = this->Mesh
     ? this->Mesh
     : MakeLattice(this->Volume,
-        this->IsMeshOfElements ? std::max(2, (this->NumberOfNodes + 1) / 2) : this->NumberOfNodes);
+        this->IsMeshOfElements ? std::max(2, (this->NodesPerAxis + 1) / 2) : this->NodesPerAxis);
   this->MassSpring->SetInputData(this->RestMesh);
   this->Elements->SetInputData(this->RestMesh);
 }
@@ -159,12 +159,12 @@ void SessionPipeline::SetModel(int model)
 
 void SessionPipeline::SetLattice(int nodes)
 {
-  if (nodes == this->NumberOfNodes)
+  if (nodes == this->NodesPerAxis)
   {
     return;
   }
-  const int former = this->NumberOfNodes;
-  this->NumberOfNodes = nodes;
+  const int former = this->NodesPerAxis;
+  this->NodesPerAxis = nodes;
   this->MakeRestMesh();
   try
   {
@@ -175,7 +175,7 @@ void SessionPipeline::SetLattice(int nodes)
   }
   catch (...) // for example, a handle holds no node of this lattice
   {
-    this->NumberOfNodes = former;
+    this->NodesPerAxis = former;
     this->MakeRestMesh();
     this->Rebuild();
     throw;
@@ -212,7 +212,7 @@ void SessionPipeline::Connect()
 
 void SessionPipeline::Rebuild()
 {
-  this->IsToRebuild = false;
+  this->NeedsRebuild = false;
   this->Connect();
   this->LastVectors.clear();
   this->QuietSteps = 0;
@@ -393,7 +393,7 @@ void SessionPipeline::CheckDisplacements()
     // False for not-a-number, too.
     if (!std::all_of(vector, vector + 3, [](double part) { return std::abs(part) <= largest; }))
     {
-      this->IsToRebuild = true;
+      this->NeedsRebuild = true;
       throw std::runtime_error("The deformation moves node " + std::to_string(id) +
         " of the mesh by more than 16,383 voxels. Move the handles less far.");
     }
@@ -401,7 +401,7 @@ void SessionPipeline::CheckDisplacements()
 }
 
 // Restores a possible state after a step has failed.
-void SessionPipeline::StepBack()
+void SessionPipeline::RestoreLastPossible()
 {
   for (Action& action : this->Done)
   {
@@ -409,7 +409,7 @@ void SessionPipeline::StepBack()
   }
   try
   {
-    if (!this->IsToRebuild)
+    if (!this->NeedsRebuild)
     {
       this->UpdateModel(this->GetHeld());
       return;
@@ -436,7 +436,7 @@ void SessionPipeline::StepBack()
 
 bool SessionPipeline::Step()
 {
-  if (this->IsToRebuild)
+  if (this->NeedsRebuild)
   {
     this->Rebuild();
   }
@@ -450,20 +450,20 @@ bool SessionPipeline::Step()
   }
   catch (...)
   {
-    this->StepBack();
+    this->RestoreLastPossible();
     throw;
   }
   for (Action& action : this->Done)
   {
     action.LastPossible = action.Now;
   }
-  return this->FindMotion();
+  return this->UpdateMotion();
 }
 
 // Returns whether the body still moves. A body with inertia stops for a moment when it changes its
 // direction. With MASS_SPRING, the body is therefore at rest only after several steps without
 // motion.
-bool SessionPipeline::FindMotion()
+bool SessionPipeline::UpdateMotion()
 {
   if (this->Model == Session::CHAIN_MAIL)
   {

@@ -56,15 +56,16 @@ int FindChoice(const std::array<Choice, Count>& choices, char key)
 
 ///@{
 /// Return numbers with up to four significant digits. The numbers of a position are in parentheses.
-inline std::string Format(double number)
+inline std::string FormatShort(double number)
 {
   char digits[32];
   std::snprintf(digits, sizeof(digits), "%.4g", number);
   return digits;
 }
-inline std::string Format(const double position[3])
+inline std::string FormatShort(const double position[3])
 {
-  return "(" + Format(position[0]) + ", " + Format(position[1]) + ", " + Format(position[2]) + ")";
+  return "(" + FormatShort(position[0]) + ", " + FormatShort(position[1]) + ", " +
+    FormatShort(position[2]) + ")";
 }
 ///@}
 

@@ -103,14 +103,14 @@ private:
 
 } // namespace
 
-glm::dvec3 deformvolume::GetWorld(vtkRenderer* renderer, double x, double y, double z)
+glm::dvec3 deformvolume::DisplayToWorld(vtkRenderer* renderer, double x, double y, double z)
 {
   double world[4];
   vtkInteractorObserver::ComputeDisplayToWorld(renderer, x, y, z, world);
   return { world[0], world[1], world[2] };
 }
 
-glm::dvec3 deformvolume::GetDisplay(vtkRenderer* renderer, const glm::dvec3& position)
+glm::dvec3 deformvolume::WorldToDisplay(vtkRenderer* renderer, const glm::dvec3& position)
 {
   double display[3];
   vtkInteractorObserver::ComputeWorldToDisplay(
@@ -120,7 +120,7 @@ glm::dvec3 deformvolume::GetDisplay(vtkRenderer* renderer, const glm::dvec3& pos
 
 LineOfSight deformvolume::GetLineOfSight(vtkRenderer* renderer, int x, int y)
 {
-  return { GetWorld(renderer, x, y, 0.0), GetWorld(renderer, x, y, 1.0) };
+  return { DisplayToWorld(renderer, x, y, 0.0), DisplayToWorld(renderer, x, y, 1.0) };
 }
 
 vtkIdType deformvolume::FindAbsorbingVoxel(

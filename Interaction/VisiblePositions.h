@@ -24,8 +24,8 @@ struct LineOfSight
 
 ///@{
 /// Convert between display coordinates (pixels, and a depth from 0 to 1) and world coordinates.
-glm::dvec3 GetWorld(vtkRenderer* renderer, double x, double y, double z);
-glm::dvec3 GetDisplay(vtkRenderer* renderer, const glm::dvec3& position);
+glm::dvec3 DisplayToWorld(vtkRenderer* renderer, double x, double y, double z);
+glm::dvec3 WorldToDisplay(vtkRenderer* renderer, const glm::dvec3& position);
 LineOfSight GetLineOfSight(vtkRenderer* renderer, int x, int y);
 ///@}
 

@@ -23,8 +23,8 @@
 #include <algorithm>
 #include <cmath>
 
-using deformvolume::Format;
-using deformvolume::GetWorld;
+using deformvolume::DisplayToWorld;
+using deformvolume::FormatShort;
 using deformvolume::ListChoices;
 using deformvolume::ModelChoices;
 using deformvolume::StyleOverlay;
@@ -57,7 +57,7 @@ constexpr const char* KeyHelp =
 
 // The matrix from the image that is shown, which has no direction, no origin and no negative
 // spacing, to the world.
-vtkSmartPointer<vtkMatrix4x4> MakeAxes(vtkImageData* image)
+vtkSmartPointer<vtkMatrix4x4> MakeUserMatrix(vtkImageData* image)
 {
   auto axes = vtkSmartPointer<vtkMatrix4x4>::New();
   const int* extent = image->GetExtent();
@@ -270,13 +270,13 @@ void vtkDeformVolumeInteractorStyle::SetCurrentRenderer(vtkRenderer* renderer)
   }
 }
 
-bool vtkDeformVolumeInteractorStyle::FindUsedRenderer()
+bool vtkDeformVolumeInteractorStyle::SelectRenderer()
 {
   const int* position = this->Interactor->GetEventPosition();
-  return this->FindUsedRenderer(position[0], position[1]);
+  return this->SelectRenderer(position[0], position[1]);
 }
 
-bool vtkDeformVolumeInteractorStyle::FindUsedRenderer(int x, int y)
+bool vtkDeformVolumeInteractorStyle::SelectRenderer(int x, int y)
 {
   this->FindPokedRenderer(x, y);
   if (!this->CurrentRenderer)
@@ -320,7 +320,7 @@ vtkImageData* vtkDeformVolumeInteractorStyle::GetOutput()
 
 vtkImageData* vtkDeformVolumeInteractorStyle::GetShownImage()
 {
-  return this->Internals->Shown;
+  return this->Internals->ShownImage;
 }
 
 void vtkDeformVolumeInteractorStyle::Forget()
@@ -328,9 +328,9 @@ void vtkDeformVolumeInteractorStyle::Forget()
   vtkInternals& internals = *this->Internals;
   internals.EndPress();
   internals.Output = nullptr;
-  internals.Shown = nullptr;
+  internals.ShownImage = nullptr;
   internals.WantedModel = -1;
-  internals.Measured.clear();
+  internals.MeasuredPositions.clear();
   internals.Sphere.clear();
   this->MeasuredDistance = 0.0;
 }
@@ -346,11 +346,11 @@ std::string vtkDeformVolumeInteractorStyle::GetStatus()
   std::string text = ListChoices(ToolChoices, this->Tool);
   if (this->Tool == CUT && internals.Output)
   {
-    text += "  depth " + Format(this->GetUsedCutDepth());
+    text += "  depth " + FormatShort(this->GetEffectiveCutDepth());
   }
   if (this->Tool == CARVE && internals.Output)
   {
-    text += "  radius " + Format(this->GetUsedCarveRadius());
+    text += "  radius " + FormatShort(this->GetEffectiveCarveRadius());
   }
   text += '\n';
   if (internals.Session)
@@ -362,7 +362,7 @@ std::string vtkDeformVolumeInteractorStyle::GetStatus()
     // Finite elements need several frames to reach equilibrium.
     constexpr double leastShown = 1e-3;
     const double residual = internals.Session->GetRelativeResidual();
-    text += residual > leastShown ? ", residual " + Format(100.0 * residual) + " %\n" : "\n";
+    text += residual > leastShown ? ", residual " + FormatShort(100.0 * residual) + " %\n" : "\n";
   }
   return text + (this->Message.empty() ? "h help" : this->Message);
 }
@@ -446,22 +446,22 @@ bool vtkDeformVolumeInteractorStyle::Poll()
 void vtkDeformVolumeInteractorStyle::ShowOutput()
 {
   vtkInternals& internals = *this->Internals;
-  internals.Shown = vtkSmartPointer<vtkImageData>::New();
+  internals.ShownImage = vtkSmartPointer<vtkImageData>::New();
   int dimensions[3];
   internals.Output->GetDimensions(dimensions);
-  internals.Shown->SetDimensions(dimensions);
+  internals.ShownImage->SetDimensions(dimensions);
   // VTK's mapper shades volumes with a negative spacing wrongly.
   const glm::dvec3 voxel = deformvolume::GetVoxelSize(internals.Output);
-  internals.Shown->SetSpacing(voxel.x, voxel.y, voxel.z);
-  internals.Shown->GetPointData()->SetScalars(internals.Output->GetPointData()->GetScalars());
+  internals.ShownImage->SetSpacing(voxel.x, voxel.y, voxel.z);
+  internals.ShownImage->GetPointData()->SetScalars(internals.Output->GetPointData()->GetScalars());
   if (!internals.Volume)
   {
     return;
   }
-  internals.Volume->SetUserMatrix(MakeAxes(internals.Output));
+  internals.Volume->SetUserMatrix(MakeUserMatrix(internals.Output));
   if (auto* mapper = vtkVolumeMapper::SafeDownCast(internals.Volume->GetMapper()))
   {
-    mapper->SetInputData(internals.Shown);
+    mapper->SetInputData(internals.ShownImage);
   }
   else
   {
@@ -503,19 +503,20 @@ bool vtkDeformVolumeInteractorStyle::UpdateOverlay()
   }
   if (internals.Handle >= 0)
   {
-    overlay.AddPoint(internals.Held, GrabbedColor); // the session may not have moved it yet
+    overlay.AddPoint(
+      internals.GrabbedPosition, GrabbedColor); // the session may not have moved it yet
   }
   std::vector<glm::dvec3> stroke;
   for (const auto& point : internals.Stroke)
   {
-    stroke.push_back(GetWorld(this->CurrentRenderer, point[0], point[1], 0.5));
+    stroke.push_back(DisplayToWorld(this->CurrentRenderer, point[0], point[1], 0.5));
   }
   overlay.AddLine(stroke, StrokeColor);
-  for (const glm::dvec3& worldPosition : internals.Measured)
+  for (const glm::dvec3& worldPosition : internals.MeasuredPositions)
   {
     overlay.AddPoint(worldPosition, MeasureColor);
   }
-  overlay.AddLine(internals.Measured, MeasureColor);
+  overlay.AddLine(internals.MeasuredPositions, MeasureColor);
   for (const glm::dvec3& center : internals.Sphere)
   {
     vtkCamera* camera = this->CurrentRenderer->GetActiveCamera();
@@ -530,8 +531,8 @@ bool vtkDeformVolumeInteractorStyle::UpdateOverlay()
     for (int i = 0; i <= corners; ++i)
     {
       const double angle = 2.0 * vtkMath::Pi() * i / corners;
-      circle.push_back(
-        center + this->GetUsedCarveRadius() * (std::cos(angle) * right + std::sin(angle) * up));
+      circle.push_back(center +
+        this->GetEffectiveCarveRadius() * (std::cos(angle) * right + std::sin(angle) * up));
     }
     overlay.AddLine(circle, StrokeColor);
   }
@@ -540,7 +541,7 @@ bool vtkDeformVolumeInteractorStyle::UpdateOverlay()
 
 bool vtkDeformVolumeInteractorStyle::FindPosition(int x, int y, double worldPosition[3])
 {
-  if (!this->CheckInteractor() || !this->FindUsedRenderer(x, y) || !this->Internals->Output)
+  if (!this->CheckInteractor() || !this->SelectRenderer(x, y) || !this->Internals->Output)
   {
     return false;
   }
@@ -559,12 +560,12 @@ double vtkDeformVolumeInteractorStyle::GetDiagonal()
   return this->Internals->Output ? this->Internals->Output->GetLength() : 0.0;
 }
 
-double vtkDeformVolumeInteractorStyle::GetUsedCutDepth()
+double vtkDeformVolumeInteractorStyle::GetEffectiveCutDepth()
 {
   return this->CutDepth > 0.0 ? this->CutDepth : 0.1 * this->GetDiagonal();
 }
 
-double vtkDeformVolumeInteractorStyle::GetUsedCarveRadius()
+double vtkDeformVolumeInteractorStyle::GetEffectiveCarveRadius()
 {
   return this->CarveRadius > 0.0 ? this->CarveRadius : 0.025 * this->GetDiagonal();
 }

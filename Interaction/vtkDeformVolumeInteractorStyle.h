@@ -261,13 +261,13 @@ private:
 
   bool CheckInteractor();
   bool CheckSession();
-  bool FindUsedRenderer();
-  bool FindUsedRenderer(int x, int y);
+  bool SelectRenderer();
+  bool SelectRenderer(int x, int y);
   void ShowOutput();
   bool UpdateOverlay(); // returns whether the status has changed
   void BeginTool();
   void MoveTool();
-  void EndTool(bool isHeld);
+  void EndTool(bool keepHandle);
   void DragTo(int x, int y);
   void CarveAt(int x, int y, bool isLast);
   void FinishCut();
@@ -278,8 +278,8 @@ private:
   void TurnWheel(int notches);
   bool ResizeTool(int notches);
   double GetDiagonal();
-  double GetUsedCutDepth();
-  double GetUsedCarveRadius();
+  double GetEffectiveCutDepth();
+  double GetEffectiveCarveRadius();
 
   int Tool = TURN;
   double CutDepth = 0.0;

@@ -12,11 +12,11 @@
 
 #include <cmath>
 
+using deformvolume::DisplayToWorld;
 using deformvolume::FindChoice;
-using deformvolume::GetDisplay;
-using deformvolume::GetWorld;
 using deformvolume::ModelChoices;
 using deformvolume::ToolChoices;
+using deformvolume::WorldToDisplay;
 
 namespace
 {
@@ -25,7 +25,7 @@ constexpr double WheelFactor = 1.1; // of a depth or a radius
 
 void vtkDeformVolumeInteractorStyle::OnLeftButtonDown()
 {
-  if (!this->CheckInteractor() || !this->FindUsedRenderer())
+  if (!this->CheckInteractor() || !this->SelectRenderer())
   {
     return;
   }
@@ -65,7 +65,7 @@ void vtkDeformVolumeInteractorStyle::OnLeftButtonUp()
 
 void vtkDeformVolumeInteractorStyle::OnRightButtonDown()
 {
-  if (this->CheckInteractor() && this->FindUsedRenderer())
+  if (this->CheckInteractor() && this->SelectRenderer())
   {
     this->GrabFocus(this->EventCallbackCommand);
     this->StartRotate();
@@ -115,7 +115,7 @@ void vtkDeformVolumeInteractorStyle::OnMouseMove()
   internals.Sphere.clear();
   if (internals.IsPressed)
   {
-    internals.Sphere.push_back(internals.Carved);
+    internals.Sphere.push_back(internals.CarvePosition);
   }
   else if (this->FindPosition(x, y, &position.x))
   {
@@ -136,20 +136,20 @@ void vtkDeformVolumeInteractorStyle::OnMouseWheelBackward()
 
 void vtkDeformVolumeInteractorStyle::TurnWheel(int notches)
 {
-  if (!this->CheckInteractor() || !this->FindUsedRenderer() || this->ResizeTool(notches))
+  if (!this->CheckInteractor() || !this->SelectRenderer() || this->ResizeTool(notches))
   {
     return;
   }
   vtkInternals& internals = *this->Internals;
   if (internals.Handle >= 0)
   {
-    const glm::dvec3 display = GetDisplay(this->CurrentRenderer, internals.Held);
-    const glm::dvec3 near = GetWorld(this->CurrentRenderer, display.x, display.y, 0.0);
-    const glm::dvec3 far = GetWorld(this->CurrentRenderer, display.x, display.y, 1.0);
+    const glm::dvec3 display = WorldToDisplay(this->CurrentRenderer, internals.GrabbedPosition);
+    const glm::dvec3 near = DisplayToWorld(this->CurrentRenderer, display.x, display.y, 0.0);
+    const glm::dvec3 far = DisplayToWorld(this->CurrentRenderer, display.x, display.y, 1.0);
     const glm::dvec3 away = glm::normalize(far - near); // the handle may be in front of near
-    internals.Held += 0.01 * notches * this->GetDiagonal() * away;
-    internals.Session->MoveGrab(
-      internals.Handle, internals.Held.x, internals.Held.y, internals.Held.z);
+    internals.GrabbedPosition += 0.01 * notches * this->GetDiagonal() * away;
+    internals.Session->MoveGrab(internals.Handle, internals.GrabbedPosition.x,
+      internals.GrabbedPosition.y, internals.GrabbedPosition.z);
     internals.IsChanged = true;
   }
   else if (notches > 0)
@@ -167,11 +167,11 @@ bool vtkDeformVolumeInteractorStyle::ResizeTool(int notches)
   const double factor = std::pow(WheelFactor, notches);
   if (this->Tool == CUT)
   {
-    this->SetCutDepth(factor * this->GetUsedCutDepth());
+    this->SetCutDepth(factor * this->GetEffectiveCutDepth());
   }
   else if (this->Tool == CARVE)
   {
-    this->SetCarveRadius(factor * this->GetUsedCarveRadius());
+    this->SetCarveRadius(factor * this->GetEffectiveCarveRadius());
   }
   else
   {

@@ -26,7 +26,7 @@ public:
   vtkSmartPointer<vtkVolume> Volume;
   vtkNew<vtkCallbackCommand> SessionObserver;
   vtkSmartPointer<vtkImageData> Output;
-  vtkSmartPointer<vtkImageData> Shown;
+  vtkSmartPointer<vtkImageData> ShownImage;
   std::vector<deformvolume::SlicePlane> Planes;
   deformvolume::StyleOverlay Overlay;
   int TimerId = -1;
@@ -37,13 +37,13 @@ public:
   // The tool while the button is pressed.
   bool IsPressed = false;
   int Handle = -1;                       // the handle that is dragged; -1: none
-  glm::dvec3 Held{ 0.0 };                // position of this handle
+  glm::dvec3 GrabbedPosition{ 0.0 };     // position of this handle
   std::array<int, 2> Cursor{ { 0, 0 } }; // last position of the cursor, in pixels
   std::vector<std::array<int, 2>> Stroke;
   vtkSmartPointer<vtkImageData> CarvedImage; // the output before the stroke
-  glm::dvec3 Carved{ 0.0 };                  // last position of the sphere
+  glm::dvec3 CarvePosition{ 0.0 };           // last position of the sphere
 
-  std::vector<glm::dvec3> Measured;
+  std::vector<glm::dvec3> MeasuredPositions;
   std::vector<glm::dvec3> Sphere; // center of the sphere under the cursor, or empty
 
   int GetModel() const

@@ -19,10 +19,10 @@
 #include <cmath>
 #include <cstdlib>
 
-using deformvolume::Format;
-using deformvolume::GetDisplay;
+using deformvolume::DisplayToWorld;
+using deformvolume::FormatShort;
 using deformvolume::GetLineOfSight;
-using deformvolume::GetWorld;
+using deformvolume::WorldToDisplay;
 using Session = vtkDeformVolumeSession;
 
 namespace
@@ -91,7 +91,7 @@ void vtkDeformVolumeInteractorStyle::BeginTool()
       if (internals.Handle >= 0)
       {
         internals.IsPressed = true;
-        internals.Held = worldPosition;
+        internals.GrabbedPosition = worldPosition;
         internals.Cursor = { { x, y } };
         if (internals.GetModel() == Session::NONE)
         {
@@ -102,9 +102,9 @@ void vtkDeformVolumeInteractorStyle::BeginTool()
     case CARVE:
       internals.IsPressed = true;
       internals.CarvedImage = internals.Output;
-      internals.Carved = worldPosition;
+      internals.CarvePosition = worldPosition;
       internals.Session->CarveSphere(
-        worldPosition.x, worldPosition.y, worldPosition.z, this->GetUsedCarveRadius());
+        worldPosition.x, worldPosition.y, worldPosition.z, this->GetEffectiveCarveRadius());
       break;
     case PROBE:
       this->ProbeAt(x, y);
@@ -144,12 +144,12 @@ void vtkDeformVolumeInteractorStyle::DragTo(int x, int y)
   vtkInternals& internals = *this->Internals;
   // The handle is at the point of its voxel, not exactly under the cursor: move it by as much as
   // the cursor has moved.
-  const double depth = GetDisplay(this->CurrentRenderer, internals.Held).z;
-  internals.Held += GetWorld(this->CurrentRenderer, x, y, depth) -
-    GetWorld(this->CurrentRenderer, internals.Cursor[0], internals.Cursor[1], depth);
+  const double depth = WorldToDisplay(this->CurrentRenderer, internals.GrabbedPosition).z;
+  internals.GrabbedPosition += DisplayToWorld(this->CurrentRenderer, x, y, depth) -
+    DisplayToWorld(this->CurrentRenderer, internals.Cursor[0], internals.Cursor[1], depth);
   internals.Cursor = { { x, y } };
-  internals.Session->MoveGrab(
-    internals.Handle, internals.Held.x, internals.Held.y, internals.Held.z);
+  internals.Session->MoveGrab(internals.Handle, internals.GrabbedPosition.x,
+    internals.GrabbedPosition.y, internals.GrabbedPosition.z);
 }
 
 // Skips positions near the last one, because each event of a carving processes the whole sphere.
@@ -165,16 +165,16 @@ void vtkDeformVolumeInteractorStyle::CarveAt(int x, int y, bool isLast)
   }
   glm::dvec3 worldPosition(0.0);
   internals.CarvedImage->GetPoint(voxel, &worldPosition.x);
-  const double way = glm::length(worldPosition - internals.Carved);
-  if (way >= 0.25 * this->GetUsedCarveRadius() || (isLast && way > 0.0))
+  const double way = glm::length(worldPosition - internals.CarvePosition);
+  if (way >= 0.25 * this->GetEffectiveCarveRadius() || (isLast && way > 0.0))
   {
-    internals.Carved = worldPosition;
+    internals.CarvePosition = worldPosition;
     internals.Session->CarveTo(
-      worldPosition.x, worldPosition.y, worldPosition.z, this->GetUsedCarveRadius());
+      worldPosition.x, worldPosition.y, worldPosition.z, this->GetEffectiveCarveRadius());
   }
 }
 
-void vtkDeformVolumeInteractorStyle::EndTool(bool isHeld)
+void vtkDeformVolumeInteractorStyle::EndTool(bool keepHandle)
 {
   vtkInternals& internals = *this->Internals;
   if (!internals.IsPressed)
@@ -185,7 +185,7 @@ void vtkDeformVolumeInteractorStyle::EndTool(bool isHeld)
   {
     const int handle = internals.Handle;
     internals.EndPress();
-    if (isHeld)
+    if (keepHandle)
     {
       internals.Session->HoldGrab(handle);
     }
@@ -243,12 +243,12 @@ void vtkDeformVolumeInteractorStyle::FinishCut()
     const glm::dvec3 nearest = positions[isThere(i + way) ? i + way : i - way];
     const double x = internals.Stroke[i][0];
     const double y = internals.Stroke[i][1];
-    const double depth = GetDisplay(this->CurrentRenderer, nearest).z;
-    const glm::dvec3 worldPosition = GetWorld(this->CurrentRenderer, x, y, depth);
-    const glm::dvec3 away = glm::normalize(
-      GetWorld(this->CurrentRenderer, x, y, 1.0) - GetWorld(this->CurrentRenderer, x, y, 0.0));
+    const double depth = WorldToDisplay(this->CurrentRenderer, nearest).z;
+    const glm::dvec3 worldPosition = DisplayToWorld(this->CurrentRenderer, x, y, depth);
+    const glm::dvec3 away = glm::normalize(DisplayToWorld(this->CurrentRenderer, x, y, 1.0) -
+      DisplayToWorld(this->CurrentRenderer, x, y, 0.0));
     upper.push_back(worldPosition - above * away);
-    lower.push_back(worldPosition + this->GetUsedCutDepth() * away);
+    lower.push_back(worldPosition + this->GetEffectiveCutDepth() * away);
   }
   internals.Session->Cut(MakeStrip(upper, lower));
 }
@@ -268,13 +268,14 @@ void vtkDeformVolumeInteractorStyle::ProbeAt(int x, int y)
     vtkImageData* output = internals.Output;
     vtkDataArray* scalars = output->GetPointData()->GetScalars();
     const vtkIdType voxel = output->FindPoint(worldPosition);
-    this->ShowMessage("value " + Format(scalars ? scalars->GetComponent(voxel, 0) : 0.0) + " at " +
-      Format(worldPosition) + ", moving");
+    this->ShowMessage("value " + FormatShort(scalars ? scalars->GetComponent(voxel, 0) : 0.0) +
+      " at " + FormatShort(worldPosition) + ", moving");
   }
   else if (internals.Session->Probe(worldPosition[0], worldPosition[1], worldPosition[2]))
   {
-    this->ShowMessage("value " + Format(internals.Session->GetProbedValue()) + " at " +
-      Format(worldPosition) + ", at rest " + Format(internals.Session->GetProbedRestPosition()));
+    this->ShowMessage("value " + FormatShort(internals.Session->GetProbedValue()) + " at " +
+      FormatShort(worldPosition) + ", at rest " +
+      FormatShort(internals.Session->GetProbedRestPosition()));
   }
 }
 
@@ -283,18 +284,19 @@ void vtkDeformVolumeInteractorStyle::MeasureAt(int x, int y)
   vtkInternals& internals = *this->Internals;
   glm::dvec3 worldPosition(0.0);
   this->FindPosition(x, y, &worldPosition.x);
-  if (internals.Measured.size() > 1)
+  if (internals.MeasuredPositions.size() > 1)
   {
-    internals.Measured.clear();
+    internals.MeasuredPositions.clear();
   }
-  internals.Measured.push_back(worldPosition);
-  if (internals.Measured.size() == 1)
+  internals.MeasuredPositions.push_back(worldPosition);
+  if (internals.MeasuredPositions.size() == 1)
   {
     this->ShowMessage("Click the second point.");
     return;
   }
-  this->MeasuredDistance = glm::length(internals.Measured[1] - internals.Measured[0]);
-  this->ShowMessage("distance " + Format(this->MeasuredDistance));
+  this->MeasuredDistance =
+    glm::length(internals.MeasuredPositions[1] - internals.MeasuredPositions[0]);
+  this->ShowMessage("distance " + FormatShort(this->MeasuredDistance));
 }
 
 void vtkDeformVolumeInteractorStyle::PinAt(int x, int y)
@@ -311,7 +313,7 @@ void vtkDeformVolumeInteractorStyle::PinAt(int x, int y)
 
 void vtkDeformVolumeInteractorStyle::ReleaseAt(int x, int y)
 {
-  if (!this->FindUsedRenderer())
+  if (!this->SelectRenderer())
   {
     return;
   }
@@ -320,7 +322,7 @@ void vtkDeformVolumeInteractorStyle::ReleaseAt(int x, int y)
   double least = PixelsOfHandle;
   for (const auto& handle : internals.GetHandles())
   {
-    const glm::dvec3 at = GetDisplay(this->CurrentRenderer, handle.second);
+    const glm::dvec3 at = WorldToDisplay(this->CurrentRenderer, handle.second);
     const double distance = std::hypot(at.x - x, at.y - y);
     if (handle.first != internals.Handle && distance <= least)
     {

@@ -60,8 +60,9 @@ std::string CheckVolume(vtkImageData* volume)
 
 bool IsSetting(const SessionEvent& event)
 {
-  return event.Kind == SessionEvent::HANDLE_RADIUS || event.Kind == SessionEvent::RELAXATION ||
-    event.Kind == SessionEvent::LATTICE || event.Kind == SessionEvent::UNDO_MEMORY;
+  return event.Kind == SessionEvent::HANDLE_RADIUS ||
+    event.Kind == SessionEvent::RELAXATION_SWEEPS || event.Kind == SessionEvent::NUMBER_OF_NODES ||
+    event.Kind == SessionEvent::UNDO_MEMORY;
 }
 
 bool HasBits(vtkDataArray* array, int bits)
@@ -248,7 +249,7 @@ void vtkDeformVolumeSession::EndGrab(int handle)
 
 void vtkDeformVolumeSession::HoldGrab(int handle)
 {
-  this->Enqueue(SessionEvent::HOLD, { static_cast<double>(handle) });
+  this->Enqueue(SessionEvent::HOLD_GRAB, { static_cast<double>(handle) });
 }
 
 void vtkDeformVolumeSession::Release(int handle)
@@ -315,12 +316,12 @@ void vtkDeformVolumeSession::ChangeHandleRadius(double radius)
 
 void vtkDeformVolumeSession::ChangeRelaxationSweeps(int sweeps)
 {
-  this->Enqueue(SessionEvent::RELAXATION, { static_cast<double>(sweeps) });
+  this->Enqueue(SessionEvent::RELAXATION_SWEEPS, { static_cast<double>(sweeps) });
 }
 
 void vtkDeformVolumeSession::ChangeNumberOfNodes(int nodes)
 {
-  this->Enqueue(SessionEvent::LATTICE, { static_cast<double>(nodes) });
+  this->Enqueue(SessionEvent::NUMBER_OF_NODES, { static_cast<double>(nodes) });
 }
 
 void vtkDeformVolumeSession::ChangeUndoMemory(double bytes)

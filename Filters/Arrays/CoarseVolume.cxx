@@ -130,7 +130,7 @@ vtkSmartPointer<vtkImageData> MakeMasks(vtkImageData* volume, int factor)
   SwitchOffCut(masks, static_cast<std::size_t>(volume->GetNumberOfCells()));
   Extent fine;
   volume->GetExtent(fine.data());
-  Extent coarse = GetCoarse(fine, factor);
+  Extent coarse = CoarsenExtent(fine, factor);
   const auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetExtent(coarse.data());
   if (masks.Blanked)
@@ -187,7 +187,7 @@ vtkSmartPointer<vtkImageData> MakeMasks(vtkImageData* volume, int factor)
 
 } // namespace
 
-Extent GetCoarse(const Extent& voxels, int factor)
+Extent CoarsenExtent(const Extent& voxels, int factor)
 {
   Extent coarse;
   for (int axis = 0; axis < 3; ++axis)
@@ -198,15 +198,15 @@ Extent GetCoarse(const Extent& voxels, int factor)
   return coarse;
 }
 
-ImageGeometry GetCoarse(const ImageGeometry& volume, int factor)
+ImageGeometry CoarsenExtent(const ImageGeometry& volume, int factor)
 {
   ImageGeometry coarse = volume;
-  coarse.PointExtent = GetCoarse(volume.PointExtent, factor);
+  coarse.PointExtent = CoarsenExtent(volume.PointExtent, factor);
   coarse.Spacing *= factor;
   return coarse;
 }
 
-Extent GetFine(const Extent& coarse, int factor)
+Extent RefineExtent(const Extent& coarse, int factor)
 {
   Extent fine;
   std::transform(
@@ -214,15 +214,15 @@ Extent GetFine(const Extent& coarse, int factor)
   return fine;
 }
 
-vtkSmartPointer<vtkDataArray> TakeTuples(
+vtkSmartPointer<vtkDataArray> SampleTuples(
   vtkDataArray* array, const Extent& fine, const Extent& coarse, int factor)
 {
-  auto made = MakeLike(array, GetNumberOfPoints(coarse));
+  auto made = MakeArrayLike(array, GetNumberOfPoints(coarse));
   auto* to = static_cast<char*>(GetWritableValues(made));
   VolumeArray copy; // used if the array is not an array of structs
   if (!GetWritableValues(array))
   {
-    CopyIntoCommonLayout(array, copy);
+    CopyToAOS(array, copy);
   }
   const auto* from = static_cast<const char*>(copy.Data ? copy.Data : GetWritableValues(array));
   const auto bytes = static_cast<std::size_t>(made->GetDataTypeSize()) *
@@ -291,11 +291,11 @@ vtkImageData* CoarseVolume::Update(
 void CoarseVolume::CopyArrays(
   const std::vector<SourceArray>& arrays, const Extent& fine, int factor)
 {
-  const Extent coarse = GetCoarse(fine, factor);
+  const Extent coarse = CoarsenExtent(fine, factor);
   this->Arrays.clear(); // frees the old copies before new ones are made
   for (const SourceArray& source : arrays)
   {
-    this->Arrays.push_back(TakeTuples(source.Array, fine, coarse, factor));
+    this->Arrays.push_back(SampleTuples(source.Array, fine, coarse, factor));
   }
 }
 

@@ -16,18 +16,18 @@ namespace deformvolume
 
 /// The extent of the coarse volume. Its voxels are those whose structured indices are multiples of
 /// the factor, and their indices in the coarse volume are these indices divided by the factor.
-Extent GetCoarse(const Extent& voxels, int factor);
+Extent CoarsenExtent(const Extent& voxels, int factor);
 
 /// The geometry of the coarse volume: its voxels keep their positions in the world.
-ImageGeometry GetCoarse(const ImageGeometry& volume, int factor);
+ImageGeometry CoarsenExtent(const ImageGeometry& volume, int factor);
 
 /// The extent of the volume from the first to the last voxel of a coarse extent.
-Extent GetFine(const Extent& coarse, int factor);
+Extent RefineExtent(const Extent& coarse, int factor);
 
 /// Makes an array with one tuple for each point of the coarse extent, from an array with one tuple
 /// for each point of the fine extent. Point (i, j, k) of the coarse extent gets the tuple of point
 /// (factor * i, factor * j, factor * k).
-vtkSmartPointer<vtkDataArray> TakeTuples(
+vtkSmartPointer<vtkDataArray> SampleTuples(
   vtkDataArray* array, const Extent& fine, const Extent& coarse, int factor);
 
 /// Throws an Error if a coarse volume has fewer than two voxels on an axis.
@@ -51,7 +51,7 @@ private:
 
   vtkSmartPointer<vtkImageData> Image;
   std::vector<vtkSmartPointer<vtkDataArray>> Arrays;
-  Extent Voxels{ { 0, -1, 0, -1, 0, -1 } }; // of the volume that the copies were made from
+  Extent Voxels = EmptyExtent; // of the volume that the copies were made from
   Stamp ArraysStamp;
   Stamp MasksStamp;
 };

@@ -228,7 +228,7 @@ Stamp GetStamp(const std::vector<SourceArray>& arrays)
   return stamp;
 }
 
-void CopyIntoCommonLayout(vtkDataArray* array, VolumeArray& described)
+void CopyToAOS(vtkDataArray* array, VolumeArray& described)
 {
   const auto copy =
     vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(array->GetDataType()));
@@ -237,7 +237,7 @@ void CopyIntoCommonLayout(vtkDataArray* array, VolumeArray& described)
   described.Owner = MakeOwner(copy);
 }
 
-vtkSmartPointer<vtkDataArray> MakeLike(vtkDataArray* array, vtkIdType numberOfTuples)
+vtkSmartPointer<vtkDataArray> MakeArrayLike(vtkDataArray* array, vtkIdType numberOfTuples)
 {
   // The class of the array is kept, unless the kernels cannot write its layout.
   const auto made = vtkSmartPointer<vtkDataArray>::Take(
@@ -259,7 +259,7 @@ void* GetWritableValues(vtkDataArray* array)
   return FindValues(array);
 }
 
-void CopyRoles(
+void CopyAttributeRoles(
   vtkDataSetAttributes* from, vtkDataSetAttributes* to, const std::vector<SourceArray>& sources)
 {
   int roles[vtkDataSetAttributes::NUM_ATTRIBUTES];

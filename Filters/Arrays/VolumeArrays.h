@@ -49,18 +49,18 @@ std::vector<VolumeArray> MakeVolumeArrays(
 Stamp GetStamp(const std::vector<SourceArray>& arrays);
 
 /// Copies an array into an array of structs, and sets Data and Owner of `described` to the copy.
-void CopyIntoCommonLayout(vtkDataArray* array, VolumeArray& described);
+void CopyToAOS(vtkDataArray* array, VolumeArray& described);
 
 /// A new array with the type, components and names of another and the given number of tuples.
-vtkSmartPointer<vtkDataArray> MakeLike(vtkDataArray* array, vtkIdType numberOfTuples);
+vtkSmartPointer<vtkDataArray> MakeArrayLike(vtkDataArray* array, vtkIdType numberOfTuples);
 
-/// The memory of the values of an array of structs, such as MakeLike() makes; null for other
+/// The memory of the values of an array of structs, such as MakeArrayLike() makes; null for other
 /// layouts.
 void* GetWritableValues(vtkDataArray* array);
 
 /// Gives array i of `to` the attribute roles (active scalars, vectors and others) that sources[i]
 /// has in `from`.
-void CopyRoles(
+void CopyAttributeRoles(
   vtkDataSetAttributes* from, vtkDataSetAttributes* to, const std::vector<SourceArray>& sources);
 
 /// The masks of a volume: blanked voxels, active tetrahedra, boundary distances and a smooth cut.

@@ -87,7 +87,7 @@ private:
 
   std::unique_ptr<MaskEditor> Mask; // null before there is a volume
   ImageGeometry Geometry;
-  Extent Whole{ { 0, -1, 0, -1, 0, -1 } };
+  Extent Whole = EmptyExtent;
   Stamp BaseStamp;
   Stamp DistancesStamp;     // of the distances of the volume
   Stamp BaseDistancesStamp; // of the distances that Mask has

@@ -66,7 +66,7 @@ struct ExecutionState
   // Padding and on BoundsGranularity. If the latter is 0, LastExtent is not valid.
   using ExtentKey = std::tuple<BoundsSettings, int, int>;
   ExtentKey KeyOfExtent;
-  Extent LastExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent LastExtent = EmptyExtent;
 
   // Versions of the deformation that was included in Bounds last: of the shape and of the vectors.
   std::pair<std::uint64_t, std::uint64_t> VersionsInBounds;
@@ -89,7 +89,7 @@ struct ExecutionState
   // output (empty: all), the piece, the number of pieces, and the geometry of the volume.
   using OutputPart = std::tuple<Extent, int, int, ImageGeometry>;
   OutputPart LastPart;
-  Extent LastNeeded{ { 0, -1, 0, -1, 0, -1 } };
+  Extent LastNeeded = EmptyExtent;
 
   deformvolume::SplitNodes Splits;
   std::uint64_t WarnedOfSplitsOf = 0; // the version of the shape; 0: not warned

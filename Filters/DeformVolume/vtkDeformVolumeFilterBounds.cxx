@@ -167,7 +167,7 @@ void vtkDeformVolumeFilter::vtkInternals::MakeLinks(
   this->CheckWithRoom(
     [&]
     {
-      this->State->Device.CheckMemory(voxelGrid, {}, { { 0, -1, 0, -1, 0, -1 } }, 0, mesh,
+      this->State->Device.CheckMemory(voxelGrid, {}, deformvolume::EmptyExtent, 0, mesh,
         this->State->Mapping.GetRunBytes(mesh.GetMeshAtRest(), mapped));
     });
   this->State->Mapping.Update(mesh.GetMeshAtRest(), mapped, {});
@@ -315,7 +315,7 @@ deformvolume::Extent vtkDeformVolumeFilter::vtkInternals::GetDeformedExtent(
   }
   if (!keep)
   {
-    this->State->LastExtent = { { 0, -1, 0, -1, 0, -1 } };
+    this->State->LastExtent = deformvolume::EmptyExtent;
   }
   deformvolume::Extent extent;
   ranks.Attempt([&] { extent = this->FindExtent(bounds); });

@@ -102,7 +102,7 @@ void vtkDeformVolumeFilter::vtkInternals::ResetResults()
   this->Self->NumberOfInvertedTetrahedra = 0;
   this->Self->NumberOfFlatTetrahedra = 0;
   this->Self->NumberOfCoveredVoxels = 0;
-  const Extent nothing{ { 0, -1, 0, -1, 0, -1 } };
+  const Extent& nothing = deformvolume::EmptyExtent;
   std::copy(nothing.begin(), nothing.end(), this->Self->ChangedExtent);
 }
 
@@ -236,7 +236,8 @@ vtkDeformVolumeFilter::vtkInternals::Results vtkDeformVolumeFilter::vtkInternals
   Results results;
   results.Report = state.Device.Deform(request);
   state.Outputs.Give(results.Report, image);
-  deformvolume::CopyRoles(inputs.Volume->GetPointData(), image->GetPointData(), inputs.Arrays);
+  deformvolume::CopyAttributeRoles(
+    inputs.Volume->GetPointData(), image->GetPointData(), inputs.Arrays);
   results.Loss =
     state.Extra.Finish(state.Deformation, mapped.Outside, this->Self->BackgroundValue, image);
   return results;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeformVolumeFilterInternals.h"
 
+#include "DeformationChoice.h"
 #include "FieldFolds.h"
 #include "FieldGeometry.h"
 #include "InputUpdate.h"
@@ -10,7 +11,6 @@
 #include "OutputExtent.h"
 #include "PipelineGeometry.h"
 #include "ResamplerChoice.h"
-#include "VectorChoice.h"
 #include "VolumeArrays.h"
 
 #include "vtkDataObject.h"
@@ -152,7 +152,7 @@ void vtkDeformVolumeFilter::vtkInternals::ReleaseOldVolumes(
 ImageGeometry vtkDeformVolumeFilter::vtkInternals::GetCoarseGeometry(
   const ImageGeometry& volume) const
 {
-  const ImageGeometry coarse = deformvolume::GetCoarse(volume, this->Self->SamplingFactor);
+  const ImageGeometry coarse = deformvolume::CoarsenExtent(volume, this->Self->SamplingFactor);
   deformvolume::CheckCoarse(coarse, this->Self->SamplingFactor);
   return coarse;
 }
@@ -201,7 +201,7 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::MakeSourceAtRest(const Im
 {
   if (this->Self->GetNumberOfInputConnections(2) > 0)
   {
-    deformvolume::ThrowRestAlone(2, 1);
+    deformvolume::ThrowRestWithoutDeformation(2, 1);
   }
   if (!this->FieldAtRest || !(this->VolumeAtRest == volume))
   {

@@ -168,7 +168,7 @@ Extent vtkDeformVolumeFilter::vtkInternals::KeepNeeded(
   // ones.
   if (asked == whole && this->Self->OutputBoundsMode != CUSTOM_BOUNDS && !this->Reference)
   {
-    asked = { { 0, -1, 0, -1, 0, -1 } };
+    asked = deformvolume::EmptyExtent;
   }
   const deformvolume::ExecutionState::OutputPart part{ asked,
     output->Get(Pipeline::UPDATE_PIECE_NUMBER()), output->Get(Pipeline::UPDATE_NUMBER_OF_PIECES()),
@@ -209,7 +209,7 @@ Extent vtkDeformVolumeFilter::vtkInternals::GetNeededExtent(
       {
         return; // RequestData() reports what is wrong
       }
-      needed = deformvolume::GetFine(
+      needed = deformvolume::RefineExtent(
         this->KeepNeeded(regions.Find(deformvolume::GetRequestedPart(output)), volume, output),
         this->Self->SamplingFactor);
     });

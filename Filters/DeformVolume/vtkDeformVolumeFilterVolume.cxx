@@ -80,7 +80,7 @@ deformvolume::MappedVolume vtkDeformVolumeFilter::vtkInternals::GetMappedVolume(
   }
   deformvolume::CheckVolume(mapped.Whole);
   mapped.Whole = this->GetCoarseGeometry(mapped.Whole);
-  mapped.Part = deformvolume::GetCoarse(mapped.Part, this->Self->SamplingFactor);
+  mapped.Part = deformvolume::CoarsenExtent(mapped.Part, this->Self->SamplingFactor);
   return mapped;
 }
 

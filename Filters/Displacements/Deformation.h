@@ -5,7 +5,7 @@
 #include "DeformationSource.h"
 #include "DeviceVectors.h"
 #include "DisplacementField.h"
-#include "FieldScan.h"
+#include "FieldChecker.h"
 #include "IndexBounds.h"
 #include "MeshAtRest.h"
 #include "OutsideVoxels.h"
@@ -151,7 +151,7 @@ private:
   std::uint64_t UndefinedVersion = 0;
   DisplacementField FieldInPlace; // no Owner: there is none
   IndexBounds FieldBounds;
-  FieldScan ScanInPlace;
+  FieldChecker ScanInPlace;
   const void* ArrayInPlace = nullptr;
   vtkMTimeType TimeInPlace = 0; // modification time of the array
   PointRanges ChangesInPlace;   // changes from VersionBeforeChanges to VectorsVersion

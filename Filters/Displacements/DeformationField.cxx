@@ -3,9 +3,9 @@
 #include "Deformation.h"
 
 #include "CoarseVolume.h"
+#include "FieldChecker.h"
 #include "FieldGeometry.h"
 #include "FieldReading.h"
-#include "FieldScan.h"
 #include "MeshStamp.h"
 #include "ParallelFor.h"
 #include "PipelineGeometry.h"
@@ -32,7 +32,7 @@ namespace
 
 // Fields of fewer points are copied and compared with their last values. This is fast, and later
 // steps then process only changed blocks.
-constexpr vtkIdType LeastPointsInPlace = vtkIdType{ 1 } << 18;
+constexpr vtkIdType MinPointsInPlace = vtkIdType{ 1 } << 18;
 
 } // namespace
 
@@ -88,13 +88,13 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
       this->IndexToField[4 * axis + axis] = 1.0;
       first = -voxels[2 * axis];
     }
-    taken = TakeTuples(array, points, voxels, stride);
+    taken = SampleTuples(array, points, voxels, stride);
     array = taken;
     if (!undefined.empty())
     {
       vtkNew<vtkUnsignedCharArray> all;
       all->SetArray(undefined.data(), static_cast<vtkIdType>(undefined.size()), 1);
-      const auto some = TakeTuples(all, points, voxels, stride);
+      const auto some = SampleTuples(all, points, voxels, stride);
       const auto* values = static_cast<unsigned char*>(some->GetVoidPointer(0));
       undefined = std::vector<unsigned char>(values, values + some->GetNumberOfTuples());
     }
@@ -206,7 +206,7 @@ std::vector<unsigned char> Deformation::FindUndefinedVoxels(
 bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& source)
 {
   const float* floats = FindFloats(array);
-  if (source.FieldIsInverse || !floats || array->GetNumberOfTuples() < LeastPointsInPlace)
+  if (source.FieldIsInverse || !floats || array->GetNumberOfTuples() < MinPointsInPlace)
   {
     return false;
   }
@@ -230,7 +230,8 @@ bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& 
     last.ToDisplacement == field.ToDisplacement && this->HasSameUnits(source);
   std::optional<PointRanges> written =
     isSame ? FindWritten(array, array, this->TimeInPlace) : std::nullopt;
-  const FieldState state = this->ScanInPlace.Look(voxelGrid, field, written ? &*written : nullptr);
+  const FieldCheckResult state =
+    this->ScanInPlace.Look(voxelGrid, field, written ? &*written : nullptr);
   if (!state.IsUsable)
   {
     return false; // SetVectors() throws an Error that says what is wrong

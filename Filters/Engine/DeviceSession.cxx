@@ -104,7 +104,7 @@ void DeviceSession::SetVolume(const VoxelGrid& voxelGrid, vtkImageData* volume,
     {
       if (!sent[i].Data)
       {
-        CopyIntoCommonLayout(arrays[i].Array, sent[i]);
+        CopyToAOS(arrays[i].Array, sent[i]);
       }
     }
     this->Deformer.SetArrays(sent);

@@ -323,7 +323,7 @@ ExtraArrays::Loss ExtraArrays::FinishDensities(const Deformation& deformation,
   {
     // Do not change the resampled array: the next update may write only a part of it.
     vtkDataArray* resampled = pointData->GetArray(name.c_str());
-    const auto divided = MakeLike(resampled, voxels);
+    const auto divided = MakeArrayLike(resampled, voxels);
     const int components = resampled->GetNumberOfComponents();
     const void* values = resampled->GetVoidPointer(0);
     loss.NumberOfVoxels = resampled->GetDataType() == VTK_DOUBLE

@@ -129,7 +129,7 @@ void OutputArrays::Prepare(const std::vector<SourceArray>& sources, vtkIdType nu
   std::vector<vtkSmartPointer<vtkDataArray>> wanted;
   for (const SourceArray& source : sources)
   {
-    wanted.push_back(MakeLike(source.Array, 0));
+    wanted.push_back(MakeArrayLike(source.Array, 0));
   }
   wanted.push_back(MakeMask(0));
   const bool areReusable =
@@ -189,12 +189,12 @@ void OutputArrays::Make(const std::vector<SourceArray>& sources, DeformRequest& 
         SetSize(made, this->NumberOfTuples); // loses the values of the earlier output
         reusable.Values = nullptr;
       }
-      CopyDescription(made, isMask ? MakeMask(0) : MakeLike(sources[i].Array, 0));
+      CopyDescription(made, isMask ? MakeMask(0) : MakeArrayLike(sources[i].Array, 0));
     }
     else
     {
-      made =
-        isMask ? MakeMask(this->NumberOfTuples) : MakeLike(sources[i].Array, this->NumberOfTuples);
+      made = isMask ? MakeMask(this->NumberOfTuples)
+                    : MakeArrayLike(sources[i].Array, this->NumberOfTuples);
     }
     if (isMask)
     {

@@ -251,7 +251,7 @@ void CheckMidSides(const ElasticBody& body)
     "Give each edge a node of its own; the order of nodes must be that of vtkQuadraticTetra.");
 }
 
-constexpr double LargestSine = ElasticBody::LargestSine;
+constexpr double ParallelSine = ElasticBody::ParallelSine;
 
 // Whether a node cannot move along a normal.
 bool IsHeldAlong(const ElasticBody& body, std::size_t node, const glm::dvec3& normal)
@@ -261,7 +261,7 @@ bool IsHeldAlong(const ElasticBody& body, std::size_t node, const glm::dvec3& no
   {
     rest -= glm::dot(rest, own) * own;
   }
-  return glm::length(rest) <= LargestSine;
+  return glm::length(rest) <= ParallelSine;
 }
 
 // The sliding normals of the node in the middle of an edge; 0: none. They are the normals of the
@@ -282,9 +282,9 @@ std::array<glm::dvec3, 2> GetMiddleNormals(const ElasticBody& body, std::size_t 
       const glm::dvec3 given = normals->empty() ? glm::dvec3(0.0) : (*normals)[end];
       const glm::dvec3 normal = GetUnitVector(given);
       const bool isNew =
-        number == 0 || glm::length(glm::cross(GetUnitVector(result[0]), normal)) > LargestSine;
+        number == 0 || glm::length(glm::cross(GetUnitVector(result[0]), normal)) > ParallelSine;
       if (number < result.size() && normal != glm::dvec3(0.0) && isNew &&
-        std::abs(glm::dot(edge, normal)) <= LargestSine && IsHeldAlong(body, a, normal) &&
+        std::abs(glm::dot(edge, normal)) <= ParallelSine && IsHeldAlong(body, a, normal) &&
         IsHeldAlong(body, b, normal))
       {
         result[number++] = given;

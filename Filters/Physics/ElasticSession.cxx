@@ -206,7 +206,7 @@ void ElasticSession::Cut(const WorldSheet& sheet)
       point *= this->Settings.UnitLength;
     }
     MeshSplit split = SplitMesh(positions, this->Mesh.Body.Tetrahedra, points, sheet.Triangles,
-      this->Cuts.empty() ? std::vector<TetrahedronPair>() : this->Cuts.back().Unparted);
+      this->Cuts.empty() ? std::vector<TetrahedronPair>() : this->Cuts.back().StillConnected);
     if (split.NumberOfFaces > 0)
     {
       AppliedCut cut;
@@ -214,14 +214,14 @@ void ElasticSession::Cut(const WorldSheet& sheet)
       cut.MidSides = this->Mesh.Body.MidSides;
       if (!cut.MidSides.empty())
       {
-        const std::vector<std::int32_t> copies = SplitMidSides(split.Tetrahedra,
+        const std::vector<std::int32_t> copies = SplitMidSideNodes(split.Tetrahedra,
           static_cast<std::int32_t>(positions.size() + appended.size()), cut.MidSides);
         appended.insert(appended.end(), copies.begin(), copies.end());
       }
       cut.Origins = this->Cuts.empty() ? std::vector<std::int32_t>() : this->Cuts.back().Origins;
       cut.Origins.insert(cut.Origins.end(), appended.begin(), appended.end());
       cut.Tetrahedra = std::move(split.Tetrahedra);
-      cut.Unparted = std::move(split.Unparted);
+      cut.StillConnected = std::move(split.StillConnected);
       cut.NumberOfFaces = split.NumberOfFaces;
       cut.Before = std::move(before);
       this->Cuts.push_back(std::move(cut));

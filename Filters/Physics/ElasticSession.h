@@ -66,7 +66,7 @@ private:
     std::vector<Tetrahedron> Tetrahedra;
     std::vector<MidSideNodes> MidSides; // empty: the body is not quadratic
     std::vector<std::int32_t> Origins;  // the node that each copy was made from
-    std::vector<TetrahedronPair> Unparted;
+    std::vector<TetrahedronPair> StillConnected;
     std::int64_t NumberOfFaces = 0;
     ElasticSimulation::State Before;
   };

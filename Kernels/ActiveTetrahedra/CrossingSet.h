@@ -18,7 +18,7 @@ struct CrossedEdges
   /// Crossed edges: bit 6 t + k is edge k of tetrahedron t, in the order of CrossingSet::Ends.
   std::uint32_t Edges = 0;
   /// Bit t: an edge of tetrahedron t is crossed more than once.
-  std::uint32_t IsMultiple = 0;
+  std::uint32_t MultiplyCrossed = 0;
 
   /// Adds the crossings of another triangle or edit.
   void Join(const CrossedEdges& other)
@@ -26,9 +26,9 @@ struct CrossedEdges
     const std::uint32_t both = this->Edges & other.Edges;
     for (unsigned int t = 0; t < 5; ++t)
     {
-      this->IsMultiple |= ((both >> 6 * t & 63U) != 0 ? 1U : 0U) << t;
+      this->MultiplyCrossed |= ((both >> 6 * t & 63U) != 0 ? 1U : 0U) << t;
     }
-    this->IsMultiple |= other.IsMultiple;
+    this->MultiplyCrossed |= other.MultiplyCrossed;
     this->Edges |= other.Edges;
   }
 };
@@ -49,7 +49,7 @@ struct CrossingSet : BrickSet<CrossedEdges>
 constexpr float FarFromSheets = std::numeric_limits<float>::infinity();
 
 /// Joins the distances of a vertex from two triangles, or from two edits.
-inline float JoinSheetDistances(float a, float b)
+inline float CombineSheetDistances(float a, float b)
 {
   if (a == FarFromSheets || b == FarFromSheets)
   {

@@ -6,6 +6,7 @@
 #include "FiveTetrahedra.h"
 
 #include <algorithm>
+#include <bitset>
 #include <cstring>
 #include <iterator>
 #include <string>
@@ -18,8 +19,7 @@ namespace
 
 int CountBits(unsigned int byte)
 {
-  static constexpr int counts[16] = { 0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4 };
-  return counts[byte & 15U] + counts[byte >> 4U & 15U];
+  return static_cast<int>(std::bitset<8>(byte).count());
 }
 
 } // namespace

@@ -14,8 +14,6 @@ namespace deformvolume
 namespace
 {
 
-constexpr int FiveTetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-
 // Returns the edges that are crossed if some vertices are on the negative side.
 unsigned int GetEdges(const std::array<bool, 4>& isNegative)
 {
@@ -66,7 +64,8 @@ SmoothCrossings::SmoothCrossings(const Extent& vertices)
   , VertexBricks(deformvolume::GetVertexBricks(vertices))
   , Cells({}, [](CrossedEdges& cell, const CrossedEdges& other) { cell.Join(other); })
   , VertexDistances(FarFromSheets,
-      [](float& distance, const float& other) { distance = JoinSheetDistances(distance, other); })
+      [](float& distance, const float& other)
+      { distance = CombineSheetDistances(distance, other); })
   , Changed(this->Bricks.GetNumberOfBricks(), true)
   , ChangedVertices(this->VertexBricks.GetNumberOfBricks(), true)
 {
@@ -280,7 +279,7 @@ void SmoothCrossings::UpdateCells(std::size_t brick)
           isNegative[k] = distance < 0.0F;
           isClear = isClear && distance != 0.0F;
         }
-        const bool isMultiple = (joined.IsMultiple >> t & 1U) != 0;
+        const bool isMultiple = (joined.MultiplyCrossed >> t & 1U) != 0;
         const bool isDivision = IsDivision(edges);
         const bool isDivided =
           !isMultiple && isDivision && isClear && GetEdges(isNegative) == edges;

@@ -28,7 +28,7 @@ class SharedWork
 public:
   SharedWork(WorkDevice& device, const char* name, std::uint64_t numbers)
     : Kernel(GetEntryListsProgram(device.GetContext()), name)
-    , GroupSize(std::min(device.GetBusyGroupSize(this->Kernel), LargestGroup))
+    , GroupSize(std::min(device.GetHeavyGroupSize(this->Kernel), LargestGroup))
     , Groups(static_cast<std::size_t>(std::min(
         MostGroups, std::max<std::uint64_t>(1, numbers / (NumbersPerItem * this->GroupSize)))))
   {

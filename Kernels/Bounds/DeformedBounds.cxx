@@ -142,17 +142,17 @@ IndexBounds GetCoveredBox(
   {
     return box;
   }
-  static constexpr int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
   const glm::dvec3 last = geometry.Last;
   std::vector<glm::dvec3> corners;
   for (int corner = 0; corner < 8; ++corner)
   {
-    const glm::dvec3 upper(corner & 1, corner >> 2 & 1, corner >> 1 & 1);
+    const glm::dvec3 upper(
+      DEFORMVOLUME_OFFSET_X(corner), DEFORMVOLUME_OFFSET_Y(corner), DEFORMVOLUME_OFFSET_Z(corner));
     corners.push_back(
       geometry.ToIndex(upper * last + (2.0 * upper - 1.0) * glm::dvec3(BoundsTolerance)));
   }
   IndexBounds bounds;
-  for (const auto& tetrahedron : split)
+  for (const auto& tetrahedron : FiveTetrahedra)
   {
     std::array<MovedPoint, 4> nodes;
     for (int node = 0; node < 4; ++node)

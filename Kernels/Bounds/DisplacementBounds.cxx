@@ -12,8 +12,8 @@ namespace deformvolume
 
 DisplacementBounds::DisplacementBounds()
 {
-  this->Least.fill(std::numeric_limits<float>::infinity());
-  this->Greatest.fill(-std::numeric_limits<float>::infinity());
+  this->Min.fill(std::numeric_limits<float>::infinity());
+  this->Max.fill(-std::numeric_limits<float>::infinity());
 }
 
 void DisplacementBounds::Add(const Displacements& displacements, std::size_t begin, std::size_t end)
@@ -30,9 +30,8 @@ void DisplacementBounds::Add(const Displacements& displacements, std::size_t beg
     const DisplacementRange range = GetRange(GetFactors(*displacements.Field), components);
     for (int axis = 0; begin < end && axis < 3; ++axis)
     {
-      this->Least[axis] = std::min(this->Least[axis], static_cast<float>(range.Least[axis]));
-      this->Greatest[axis] =
-        std::max(this->Greatest[axis], static_cast<float>(range.Greatest[axis]));
+      this->Min[axis] = std::min(this->Min[axis], static_cast<float>(range.Min[axis]));
+      this->Max[axis] = std::max(this->Max[axis], static_cast<float>(range.Max[axis]));
     }
     return;
   }
@@ -42,8 +41,8 @@ void DisplacementBounds::Add(const Displacements& displacements, std::size_t beg
       GetDisplacement(*displacements.Field, static_cast<std::int64_t>(point));
     for (int axis = 0; axis < 3; ++axis)
     {
-      this->Least[axis] = std::min(this->Least[axis], found[axis]);
-      this->Greatest[axis] = std::max(this->Greatest[axis], found[axis]);
+      this->Min[axis] = std::min(this->Min[axis], found[axis]);
+      this->Max[axis] = std::max(this->Max[axis], found[axis]);
     }
   }
 }
@@ -52,8 +51,8 @@ void DisplacementBounds::Add(const DisplacementBounds& other)
 {
   for (int c = 0; c < 4; ++c)
   {
-    this->Least[c] = std::min(this->Least[c], other.Least[c]);
-    this->Greatest[c] = std::max(this->Greatest[c], other.Greatest[c]);
+    this->Min[c] = std::min(this->Min[c], other.Min[c]);
+    this->Max[c] = std::max(this->Max[c], other.Max[c]);
   }
 }
 

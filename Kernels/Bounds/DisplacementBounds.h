@@ -33,8 +33,8 @@ struct DisplacementBounds
   /// too large if its ToDisplacement is not diagonal.
   void Add(const Displacements& displacements, std::size_t begin, std::size_t end);
   void Add(const DisplacementBounds& other);
-  std::array<float, 4> Least;
-  std::array<float, 4> Greatest;
+  std::array<float, 4> Min;
+  std::array<float, 4> Max;
 };
 
 /// Returns the union of bounds.
@@ -43,8 +43,8 @@ DisplacementBounds Join(const std::vector<DisplacementBounds>& bounds);
 inline void DisplacementBounds::Add(const float* displacements, std::size_t begin, std::size_t end)
 {
   // Local copies allow vectorization: the members may alias the displacements.
-  std::array<float, 4> least = this->Least;
-  std::array<float, 4> greatest = this->Greatest;
+  std::array<float, 4> least = this->Min;
+  std::array<float, 4> greatest = this->Max;
   for (std::size_t point = begin; point < end; ++point)
   {
     for (std::size_t c = 0; c < 4; ++c)
@@ -53,8 +53,8 @@ inline void DisplacementBounds::Add(const float* displacements, std::size_t begi
       greatest[c] = std::max(greatest[c], displacements[4 * point + c]);
     }
   }
-  this->Least = least;
-  this->Greatest = greatest;
+  this->Min = least;
+  this->Max = greatest;
 }
 
 } // namespace deformvolume

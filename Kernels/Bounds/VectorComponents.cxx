@@ -19,16 +19,16 @@ constexpr float Largest = std::numeric_limits<float>::max();
 
 ComponentFinder::ComponentFinder()
 {
-  this->Least.fill(Largest);
-  this->Greatest.fill(-Largest);
+  this->Min.fill(Largest);
+  this->Max.fill(-Largest);
   this->AreFinite.fill(1);
 }
 
 void ComponentFinder::Add(const float* values, std::size_t count)
 {
   // Local copies allow vectorization: the members may alias the values.
-  std::array<float, Width> least = this->Least;
-  std::array<float, Width> greatest = this->Greatest;
+  std::array<float, Width> least = this->Min;
+  std::array<float, Width> greatest = this->Max;
   std::array<int, Width> areFinite = this->AreFinite;
   const auto add = [&](std::size_t k, float value)
   {
@@ -48,21 +48,21 @@ void ComponentFinder::Add(const float* values, std::size_t count)
   {
     add(k, values[i + k]);
   }
-  this->Least = least;
-  this->Greatest = greatest;
+  this->Min = least;
+  this->Max = greatest;
   this->AreFinite = areFinite;
 }
 
 VectorComponents ComponentFinder::Get() const
 {
   VectorComponents found;
-  found.Least.fill(Largest);
-  found.Greatest.fill(-Largest);
+  found.Min.fill(Largest);
+  found.Max.fill(-Largest);
   found.AreFinite = true;
   for (std::size_t k = 0; k < Width; ++k)
   {
-    found.Least[k % 3] = std::min(found.Least[k % 3], this->Least[k]);
-    found.Greatest[k % 3] = std::max(found.Greatest[k % 3], this->Greatest[k]);
+    found.Min[k % 3] = std::min(found.Min[k % 3], this->Min[k]);
+    found.Max[k % 3] = std::max(found.Max[k % 3], this->Max[k]);
     found.AreFinite = found.AreFinite && this->AreFinite[k] != 0;
   }
   return found;
@@ -97,13 +97,13 @@ DisplacementRange GetRange(const DisplacementFactors& factors, const VectorCompo
     for (int k = 0; k < 3; ++k)
     {
       const double factor = factors[3 * axis + k];
-      const double a = factor * static_cast<double>(components.Least[k]);
-      const double b = factor * static_cast<double>(components.Greatest[k]);
+      const double a = factor * static_cast<double>(components.Min[k]);
+      const double b = factor * static_cast<double>(components.Max[k]);
       low += std::min(a, b);
       high += std::max(a, b);
     }
-    range.Least[axis] = static_cast<double>(static_cast<float>(low));
-    range.Greatest[axis] = static_cast<double>(static_cast<float>(high));
+    range.Min[axis] = static_cast<double>(static_cast<float>(low));
+    range.Max[axis] = static_cast<double>(static_cast<float>(high));
   }
   return range;
 }

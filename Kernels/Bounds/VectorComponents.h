@@ -16,9 +16,9 @@ struct DisplacementField;
 struct VectorComponents
 {
   /// The least value of each component.
-  std::array<float, 3> Least{};
+  std::array<float, 3> Min{};
   /// The greatest value of each component.
-  std::array<float, 3> Greatest{};
+  std::array<float, 3> Max{};
   /// Whether all values are finite.
   bool AreFinite = false;
 };
@@ -37,8 +37,8 @@ public:
 private:
   // 8 vectors are processed at a time, so that compilers vectorize the loop.
   static constexpr std::size_t Width = 24;
-  std::array<float, Width> Least;
-  std::array<float, Width> Greatest;
+  std::array<float, Width> Min;
+  std::array<float, Width> Max;
   std::array<int, Width> AreFinite;
 };
 
@@ -55,9 +55,9 @@ DisplacementFactors GetFactors(const DisplacementField& field);
 struct DisplacementRange
 {
   /// The least displacement on each axis, in output voxels.
-  std::array<double, 3> Least;
+  std::array<double, 3> Min;
   /// The greatest displacement on each axis, in output voxels.
-  std::array<double, 3> Greatest;
+  std::array<double, 3> Max;
 };
 /// Returns the range of the displacements of vectors with these ranges of components.
 DisplacementRange GetRange(const DisplacementFactors& factors, const VectorComponents& components);

@@ -24,7 +24,6 @@ class CornerTable
 public:
   CornerTable()
   {
-    constexpr unsigned int tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
     constexpr unsigned int bits[3] = { 1, 4, 2 }; // bits of the axes in the number of a corner
     for (unsigned int mirror = 0; mirror < 8; ++mirror)
     {
@@ -34,10 +33,10 @@ public:
         {
           for (unsigned int i = 0; active >> t & 1 && i < 4; ++i)
           {
-            const unsigned int corner = tetrahedra[t][i] ^ mirror;
+            const unsigned int corner = FiveTetrahedra[t][i] ^ mirror;
             unsigned char& found = this->Bits[mirror][active][corner];
             found |= DEFORMVOLUME_ELEMENT;
-            for (const unsigned int other : tetrahedra[t])
+            for (const unsigned int other : FiveTetrahedra[t])
             {
               for (unsigned int axis = 0; axis < 3; ++axis)
               {

@@ -24,7 +24,7 @@ struct ChainMailSnapshot
   using Block = std::array<std::int32_t, 3 * VoxelsPerBlock>;
 
   /// Structured extent of the volume.
-  Extent Voxels{ { 0, -1, 0, -1, 0, -1 } };
+  Extent Voxels = EmptyExtent;
   /// The numbers of the blocks, in ascending order.
   std::vector<std::uint32_t> Numbers;
   /// The blocks with these numbers.

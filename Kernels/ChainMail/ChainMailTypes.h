@@ -93,7 +93,7 @@ struct ChainMailReport
   /// last step, as extents in structured indices.
   std::vector<Extent> Changes;
   /// The bounding box of all Changes, in structured indices; empty if there are none.
-  Extent ChangedExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent ChangedExtent = EmptyExtent;
 
   /// Returns the number of handles whose displacement was reduced.
   int CountReducedHandles() const

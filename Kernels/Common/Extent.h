@@ -12,6 +12,9 @@ namespace deformvolume
 /// the extent.
 using Extent = std::array<int, 6>;
 
+/// An extent without points.
+inline constexpr Extent EmptyExtent{ { 0, -1, 0, -1, 0, -1 } };
+
 /// Number of points of an extent along an axis. 0 if the extent is empty.
 inline std::int64_t GetSize(const Extent& extent, int axis)
 {

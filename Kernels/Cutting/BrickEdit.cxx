@@ -55,7 +55,6 @@ void BrickEdit::CopyPoints(std::array<glm::dvec3, MaxVertices>& points) const
 
 BrickEdit::CellTetrahedra BrickEdit::GetTetrahedra(int x, int y, int z) const
 {
-  static constexpr int table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
   // Tetrahedra are mirrored by the structured index of the cell and not by its index in the brick,
   // so that a part of a volume has the same tetrahedra as the whole volume.
   const int mirror =
@@ -65,9 +64,9 @@ BrickEdit::CellTetrahedra BrickEdit::GetTetrahedra(int x, int y, int z) const
   {
     for (std::size_t k = 0; k < 4; ++k)
     {
-      const int offset = table[t][k] ^ mirror;
-      tetrahedra[t][k] =
-        this->GetVertex(x + (offset & 1), y + (offset >> 2 & 1), z + (offset >> 1 & 1));
+      const int offset = FiveTetrahedra[t][k] ^ mirror;
+      tetrahedra[t][k] = this->GetVertex(x + DEFORMVOLUME_OFFSET_X(offset),
+        y + DEFORMVOLUME_OFFSET_Y(offset), z + DEFORMVOLUME_OFFSET_Z(offset));
     }
   }
   return tetrahedra;

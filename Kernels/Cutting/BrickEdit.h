@@ -99,7 +99,7 @@ public:
     const EditProgress& progress);
 
 private:
-  Extent Vertices{ { 0, -1, 0, -1, 0, -1 } };
+  Extent Vertices = EmptyExtent;
   std::array<int, 3> Size{ { 0, 0, 0 } };          // number of cells on each axis
   std::array<std::size_t, 3> Steps{ { 0, 0, 0 } }; // offset to the next vertex on each axis
   std::array<SnappedPoint, MaxVertices> Positions;

@@ -9,22 +9,10 @@
 
 namespace deformvolume
 {
-namespace
-{
-
-bool AreSeparate(const SnappedBox& box, const IndexBounds& bounds)
-{
-  const glm::dvec3 low = GetIndex(box.Min);
-  const glm::dvec3 high = GetIndex(box.Max);
-  return low.x > bounds.Max.x || low.y > bounds.Max.y || low.z > bounds.Max.z ||
-    high.x < bounds.Min.x || high.y < bounds.Min.y || high.z < bounds.Min.z;
-}
-
-} // namespace
 
 CarvingContainment FindContainment(const SnappedBox& box, const CarvingTool& tool)
 {
-  if (box.IsEmpty() || AreSeparate(box, tool.Bounds))
+  if (box.IsEmpty() || !IndexBounds{ GetIndex(box.Min), GetIndex(box.Max) }.Overlaps(tool.Bounds))
   {
     return CarvingContainment::Nothing;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DeformedPositions.h"
 
-#include "FieldScan.h" // for AreVoxelsPoints
+#include "FieldChecker.h" // for AreVoxelsPoints
 #include "VectorComponents.h"
 
 #include <algorithm>
@@ -99,8 +99,8 @@ DisplacementLimits DeformedFieldPositions::GetLimits(std::size_t brick) const
   const DisplacementRange range = GetRange(GetFactors(this->Field), all);
   for (int axis = 0; axis < 3; ++axis)
   {
-    limits.Min[axis] = range.Least[static_cast<std::size_t>(axis)];
-    limits.Max[axis] = range.Greatest[static_cast<std::size_t>(axis)];
+    limits.Min[axis] = range.Min[static_cast<std::size_t>(axis)];
+    limits.Max[axis] = range.Max[static_cast<std::size_t>(axis)];
     if (mayFade)
     {
       limits.Min[axis] = std::min(limits.Min[axis], 0.0);

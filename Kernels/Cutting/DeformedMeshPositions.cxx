@@ -42,7 +42,7 @@ DeformedMeshPositions::DeformedMeshPositions(const Extent& vertices, const Exten
                 "that contains them.");
   }
   const std::size_t count = bricks.GetNumberOfBricks();
-  this->Overshoots.resize(count);
+  this->NegativeWeightSums.resize(count);
   std::vector<std::vector<std::int32_t>> ofParts((count + BricksPerPart - 1) / BricksPerPart);
   this->Begins.resize(count + 1);
   ParallelForParts(count, BricksPerPart,
@@ -52,7 +52,7 @@ DeformedMeshPositions::DeformedMeshPositions(const Extent& vertices, const Exten
       std::vector<std::int32_t> some;
       for (std::size_t brick = begin; brick < end; ++brick)
       {
-        this->FindTetrahedra(bricks.GetVertices(brick), some, this->Overshoots[brick]);
+        this->FindTetrahedra(bricks.GetVertices(brick), some, this->NegativeWeightSums[brick]);
         part.insert(part.end(), some.begin(), some.end());
         this->Begins[brick + 1] = some.size();
       }
@@ -168,8 +168,8 @@ void DeformedMeshPositions::SetDisplacements(const float* displacements)
           const float* node = this->Displacements + 3 * this->Tetrahedra[tetrahedron][k];
           for (std::size_t axis = 0; axis < 3; ++axis)
           {
-            box.Least[axis] = k == 0 ? node[axis] : std::min(box.Least[axis], node[axis]);
-            box.Greatest[axis] = k == 0 ? node[axis] : std::max(box.Greatest[axis], node[axis]);
+            box.Min[axis] = k == 0 ? node[axis] : std::min(box.Min[axis], node[axis]);
+            box.Max[axis] = k == 0 ? node[axis] : std::max(box.Max[axis], node[axis]);
           }
         }
       }
@@ -202,13 +202,13 @@ DisplacementLimits DeformedMeshPositions::GetLimits(std::size_t brick) const
   for (std::size_t i = this->Begins[brick]; i < this->Begins[brick + 1]; ++i)
   {
     const NodeLimits& box = this->Limits[static_cast<std::size_t>(this->OfBricks[i])];
-    limits.Add(glm::dvec3(box.Least[0], box.Least[1], box.Least[2]));
-    limits.Add(glm::dvec3(box.Greatest[0], box.Greatest[1], box.Greatest[2]));
+    limits.Add(glm::dvec3(box.Min[0], box.Min[1], box.Min[2]));
+    limits.Add(glm::dvec3(box.Max[0], box.Max[1], box.Max[2]));
   }
   if (!limits.IsEmpty())
   {
     const glm::dvec3 beyond =
-      static_cast<double>(this->Overshoots[brick]) * (limits.Max - limits.Min);
+      static_cast<double>(this->NegativeWeightSums[brick]) * (limits.Max - limits.Min);
     limits.Min -= beyond;
     limits.Max += beyond;
   }

@@ -78,8 +78,8 @@ public:
 private:
   struct NodeLimits
   {
-    std::array<float, 3> Least;
-    std::array<float, 3> Greatest;
+    std::array<float, 3> Min;
+    std::array<float, 3> Max;
   };
 
   void FindRow(
@@ -100,7 +100,7 @@ private:
   std::vector<std::size_t> Begins;
   /// For the vertices of each brick, the largest absolute value of the sum of negative weights.
   /// Weights are negative where vertices are extrapolated, and by rounding.
-  std::vector<float> Overshoots;
+  std::vector<float> NegativeWeightSums;
   std::vector<NodeLimits> Limits; // limits of the displacements of the nodes of each tetrahedron
 };
 

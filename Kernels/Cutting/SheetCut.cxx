@@ -159,7 +159,7 @@ std::vector<std::size_t> FindNear(const SheetTriangles& triangles, const VertexP
 
 using Vertices = std::array<std::size_t, 4>;
 
-void Hit(const SheetTriangles& triangles, std::size_t triangle, BrickEdit& edit)
+void HitCrossedTetrahedra(const SheetTriangles& triangles, std::size_t triangle, BrickEdit& edit)
 {
   triangles.ForEachNear(triangle, edit,
     [&](std::size_t index, int t, const Vertices& v, const std::array<bool, 4>& isAbove)
@@ -188,7 +188,7 @@ struct BrickCrossings
 // in the plane of a triangle is on one side of it, because vertices are shifted symbolically.
 constexpr double LeastDistance = 1e-6;
 
-void Cross(
+void AddCrossedEdges(
   const SheetTriangles& triangles, std::size_t triangle, BrickEdit& edit, BrickCrossings& crossings)
 {
   const TriangleCrossing& crossing = triangles.GetCrossing(triangle);
@@ -197,7 +197,7 @@ void Cross(
     const auto far =
       static_cast<float>(std::max(crossing.GetDistance(edit.GetPosition(vertex)), LeastDistance));
     crossings.Distances[vertex] =
-      JoinSheetDistances(crossings.Distances[vertex], isAbove ? far : -far);
+      CombineSheetDistances(crossings.Distances[vertex], isAbove ? far : -far);
   };
   triangles.ForEachNear(triangle, edit,
     [&](std::size_t index, int t, const Vertices& v, const std::array<bool, 4>& isAbove)
@@ -235,7 +235,7 @@ TetrahedronSet FindCrossedTetrahedra(
     {
       for (const std::size_t triangle : FindNear(triangles, positions, brick, edit))
       {
-        Hit(triangles, triangle, edit);
+        HitCrossedTetrahedra(triangles, triangle, edit);
       }
     },
     progress);
@@ -262,7 +262,7 @@ CrossingSet FindSheetCrossings(
       part->Distances.fill(FarFromSheets);
       for (const std::size_t triangle : near)
       {
-        Cross(triangles, triangle, edit, *part);
+        AddCrossedEdges(triangles, triangle, edit, *part);
       }
       if (edit.IsHit())
       {
@@ -274,7 +274,8 @@ CrossingSet FindSheetCrossings(
   std::sort(
     parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a->Brick < b->Brick; });
   CrossingSet set;
-  DistanceGatherer gatherer(positions.GetBricks().GetVertices(), FarFromSheets, JoinSheetDistances);
+  DistanceGatherer gatherer(
+    positions.GetBricks().GetVertices(), FarFromSheets, CombineSheetDistances);
   for (const auto& part : parts)
   {
     set.Bricks.push_back(part->Brick);

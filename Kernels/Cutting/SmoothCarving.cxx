@@ -20,10 +20,10 @@ namespace
 using BrickDistances = std::array<float, BrickEdit::MaxVertices>;
 
 /// Finds the distances of the vertices of a brick.
-class BrickBoundary
+class CarvedBrick
 {
 public:
-  explicit BrickBoundary(float far)
+  explicit CarvedBrick(float far)
     : Far(far)
   {
   }
@@ -126,7 +126,7 @@ private:
 /// Returns the distance with the smaller absolute value. A vertex of several bricks may have a cell
 /// that the boundary passes through in only one of these bricks, and is far from the boundary in
 /// the other bricks.
-float JoinCarvedDistances(float last, float next)
+float CombineCarvedDistances(float last, float next)
 {
   return std::abs(next) <= std::abs(last) ? next : last;
 }
@@ -136,7 +136,7 @@ float JoinCarvedDistances(float last, float next)
 SmoothCarving FindSmoothCarving(const VertexPositions& positions, const CarvingTool& tool,
   float far, const EditProgress& progress)
 {
-  DistanceGatherer gatherer(positions.GetBricks().GetVertices(), far, JoinCarvedDistances);
+  DistanceGatherer gatherer(positions.GetBricks().GetVertices(), far, CombineCarvedDistances);
   SmoothCarving carving;
   carving.Tetrahedra = BrickEdit::ForEachBrick(
     positions.GetBricks().GetNumberOfBricks(),
@@ -157,7 +157,7 @@ SmoothCarving FindSmoothCarving(const VertexPositions& positions, const CarvingT
       {
         inside[i] = edit.HasPosition(i) && values[i] < 0.0;
       }
-      BrickBoundary boundary(far);
+      CarvedBrick boundary(far);
       if (!boundary.Mark(edit, inside))
       {
         return;
@@ -184,7 +184,7 @@ SmoothCarving FindSmoothCarving(const CellBricks& bricks,
   float far, const EditProgress& progress)
 {
   const RestPositions positions(bricks.GetVertices());
-  DistanceGatherer gatherer(bricks.GetVertices(), far, JoinCarvedDistances);
+  DistanceGatherer gatherer(bricks.GetVertices(), far, CombineCarvedDistances);
   SmoothCarving carving;
   carving.Tetrahedra = BrickEdit::ForEachBrick(
     bricks.GetNumberOfBricks(),
@@ -198,7 +198,7 @@ SmoothCarving FindSmoothCarving(const CellBricks& bricks,
       {
         inside[i] = values[i] < 0.0;
       }
-      BrickBoundary boundary(far);
+      CarvedBrick boundary(far);
       if (boundary.Mark(edit, inside))
       {
         const std::vector<std::size_t> marked = boundary.GetMarked();

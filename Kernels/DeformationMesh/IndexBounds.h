@@ -69,7 +69,7 @@ struct IndexBounds
 
 /// Largest absolute index of a vertex at rest on each axis of the output. Indices in units of 1/256
 /// voxel, and their differences, then fit into 32 bits.
-inline constexpr double MostOutputIndex = 1 << 21;
+inline constexpr double MaxOutputIndex = 1 << 21;
 
 /// Returns the bounding box of the points of an extent, in continuous indices.
 inline IndexBounds GetBox(const Extent& extent)

@@ -212,7 +212,7 @@ bool RestRegions::HasVoxels() const
 
 Extent RestRegions::Find(const Extent& part) const
 {
-  Extent found{ { 0, -1, 0, -1, 0, -1 } };
+  Extent found = EmptyExtent;
   for (std::int64_t region = 0; region < this->GetNumberOfRegions(); ++region)
   {
     const IndexBounds& bounds = this->Bounds[region];

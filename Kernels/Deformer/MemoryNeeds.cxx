@@ -7,7 +7,7 @@
 #include "MemoryBudget.h"
 #include "MeshRasterizer.h"
 #include "SlabSizes.h"
-#include "VectorReading.h"
+#include "VectorConverter.h"
 #include "VertexLink.h"
 #include "WorkDevice.h"
 
@@ -34,7 +34,7 @@ std::uint64_t CountVoxelsOfSlab(WorkDevice& device, const DeformationSize& size)
 bool IsConvertedByKernel(WorkDevice& device, const DeformationSize& size)
 {
   return !device.GetDevice().IsProcessor && size.NumberOfTetrahedra == 0 &&
-    size.NumberOfNodes >= VectorReading::LeastPoints;
+    size.NumberOfNodes >= VectorConverter::MinPoints;
 }
 
 std::uint64_t CountDeviceMemory(
@@ -60,7 +60,7 @@ std::uint64_t CountDeviceMemory(
     DeferredCells::GetMemory(device, BrickGrid(size.Grid).GetNumberOfBricks());
   const std::uint64_t bits = deferred > 0 ? CountWords(outputVoxels) * 4 : 0;
   const std::uint64_t vectors = IsConvertedByKernel(device, size)
-    ? std::min(size.NumberOfNodes, VectorReading::PointsOfPortion) * 3 * sizeof(float)
+    ? std::min(size.NumberOfNodes, VectorConverter::PointsOfPortion) * 3 * sizeof(float)
     : 0;
   // Arrays, states, active tetrahedra and blanking; links or runs of a mesh; arrays and coverage of
   // the output; displacements and tetrahedra.

@@ -6,7 +6,7 @@
 #include "MemoryNeeds.h"
 #include "MeshChecks.h"
 #include "ParallelFor.h"
-#include "VectorReading.h"
+#include "VectorConverter.h"
 #include "VolumeDeformerInternals.h"
 
 #include <algorithm>
@@ -57,7 +57,8 @@ void CheckArrays(const std::vector<VolumeArray>& arrays)
 // Undefined points have not-a-number on all axes. Other vectors must be finite and not too large.
 void CheckInverseVectors(const DisplacementField& field)
 {
-  const auto count = static_cast<std::size_t>(CountPoints(field));
+  CheckHasPoints(field);
+  const auto count = static_cast<std::size_t>(GetNumberOfPoints(field));
   std::atomic<std::size_t> bad{ count };
   constexpr std::size_t step = 16384;
   ParallelForParts(count, step,
@@ -143,7 +144,7 @@ void VolumeDeformer::SetArrays(const std::vector<VolumeArray>& arrays)
   this->Impl->Send(
     [&](Internals::Parts& parts)
     {
-      parts.Incremental.Forget();
+      parts.Incremental.Invalidate();
       parts.Volume.GetArrays().Set(arrays, parts.Source.GetFieldInPlace());
     });
 }
@@ -153,7 +154,7 @@ void VolumeDeformer::SetArrayOptions(const std::vector<VolumeArray>& arrays)
   Internals::Parts& parts = this->Impl->GetParts();
   if (parts.Volume.GetArrays().SetOptions(arrays))
   {
-    parts.Incremental.Forget();
+    parts.Incremental.Invalidate();
   }
 }
 
@@ -240,11 +241,11 @@ void VolumeDeformer::SetCoincidentNodes(const std::int32_t* numbers)
   this->Impl->Send(
     [&](Internals::Parts& parts)
     {
-      const bool wasOn = parts.Volume.GetMasks().GetBridges().HasCoincidentNodes();
+      const bool wasOn = parts.Volume.GetMasks().GetResampledMask().HasCoincidentNodes();
       parts.Source.SetCoincidentNodes(numbers);
-      if (wasOn != parts.Volume.GetMasks().GetBridges().HasCoincidentNodes())
+      if (wasOn != parts.Volume.GetMasks().GetResampledMask().HasCoincidentNodes())
       {
-        parts.Incremental.Forget();
+        parts.Incremental.Invalidate();
       }
     });
 }
@@ -264,7 +265,7 @@ void VolumeDeformer::SetRestMesh(const Tetrahedron* tetrahedra, std::size_t numb
 
 void VolumeDeformer::SetInverseField(const DisplacementField& field)
 {
-  CountPoints(field); // throws if there are no points
+  CheckHasPoints(field);
   this->Impl->Send(
     [&](Internals::Parts& parts)
     {
@@ -285,7 +286,7 @@ void VolumeDeformer::SetNodeDisplacements(
 void VolumeDeformer::SetDisplacementField(
   const DisplacementField& field, const PointRanges* changes)
 {
-  CountPoints(field); // throws if there are no points
+  CheckHasPoints(field);
   this->Impl->Send(
     [&](Internals::Parts& parts)
     {
@@ -310,7 +311,7 @@ void VolumeDeformer::SetNodeDisplacements(
       // Mesh rasterization takes its nodes from the host.
       DisplacementField field;
       field.ToDisplacement = toDisplacement;
-      VectorReading reading(this->Impl->Device);
+      VectorConverter reading(this->Impl->Device);
       reading.Begin(vectors, field, parts.Rasterizer.GetNumberOfNodes());
       parts.SetNodeDisplacements(reading.GetDisplacements({}), nullptr, false);
     });

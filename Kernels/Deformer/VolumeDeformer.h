@@ -128,9 +128,9 @@ public:
   void ChangeConnectivity(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const std::vector<TetrahedronChange>* changes = nullptr);
   /// Opens gaps where the mesh is split: tetrahedra of the sampling mesh with vertices on both
-  /// sides are switched off (rule in BridgeMask.cl). numbers: one number per node; nodes with the
-  /// same rest position have the same number. Call this again after SetMesh and ChangeConnectivity.
-  /// Null (default): no gaps.
+  /// sides are switched off (rule in ResampledMask.cl). numbers: one number per node; nodes with
+  /// the same rest position have the same number. Call this again after SetMesh and
+  /// ChangeConnectivity. Null (default): no gaps.
   void SetCoincidentNodes(const std::int32_t* numbers);
   /// Set the deformation mesh for MeshRasterization. Use this instead of SetMesh. restNodes: three
   /// values per node, continuous indices of the volume.

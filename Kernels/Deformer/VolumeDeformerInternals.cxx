@@ -102,7 +102,7 @@ void VolumeDeformer::Internals::Parts::UpdateFieldBoundary(const DisplacementFie
   }
   this->SetBoundary(boundary, nullptr);
   // The new boundary has other points, so bricks at the boundary change.
-  this->Incremental.GetObserver().ForgetMapping();
+  this->Incremental.GetObserver().InvalidateMapping();
   last.Dimensions = field.Dimensions;
   last.IndexToField = field.IndexToField;
   last.Extrapolate = field.Extrapolate;
@@ -208,7 +208,7 @@ DeformReport VolumeDeformer::Internals::Parts::Resample(
 {
   this->Exact.Start();
   // Update the bridges before planning, which depends on all masks.
-  this->Incremental.ChangeMask(this->Source.UpdateBridges(), true);
+  this->Incremental.ChangeMask(this->Source.UpdateResampledMask(), true);
   DeformReport report;
   report.NumberOfBricks = static_cast<std::int64_t>(this->Volume.GetBricks().GetNumberOfBricks());
   if (!this->Incremental.Update(request, this->Source, this->Exact, report))
@@ -228,7 +228,7 @@ DeformReport VolumeDeformer::Internals::Parts::Resample(
 DeformReport VolumeDeformer::Internals::Parts::Rasterize(
   const DeformRequest& request, std::uint64_t spare)
 {
-  this->Incremental.Forget();
+  this->Incremental.Invalidate();
   DeformReport report;
   // Keep half of the spare memory for lists of tetrahedra that become longer than estimated.
   MakeSlabs(this->Rasterizer, this->Device, this->Volume, request, spare / 2, report);

@@ -63,7 +63,7 @@ public:
     DeformReport Deform(const DeformRequest& request);
     /// Copies the last output to the host, as far as it is on the device and can still be read.
     /// Does not throw.
-    void BringOutput() { this->Unread.Bring(); }
+    void BringOutput() { this->Unread.Download(); }
 
     /// The memory allocated on the device, in bytes.
     std::uint64_t GetMemory() const;

@@ -31,7 +31,7 @@ BoundaryDependencies FindBoundaryDependencies(
       getIndex(2, static_cast<double>(cell / size[0] / size[1])))] = 1;
   }
   found.Tetrahedra.resize(isField ? 0 : isNear.size());
-  found.FieldPoints.resize(isField ? isNear.size() : 0, { { 0, -1, 0, -1, 0, -1 } });
+  found.FieldPoints.resize(isField ? isNear.size() : 0, EmptyExtent);
   for (const MeshBoundary::Piece& piece : boundary.Pieces)
   {
     Extent near;
@@ -45,7 +45,7 @@ BoundaryDependencies FindBoundaryDependencies(
       const int begin = vertices[2 * axis];
       // The box is one cell larger than the piece on each side: nodes are rounded, and a cell
       // beside those that the piece moves may be crossed by the boundary, too. If the piece
-      // changes, IncrementalUpdate::IsInside() must be false for all of these cells.
+      // changes, ChangeTracker::IsInside() must be false for all of these cells.
       near[2 * axis] = getIndex(static_cast<int>(axis), std::floor(rest.first - begin) - 1.0);
       near[2 * axis + 1] = getIndex(static_cast<int>(axis), std::floor(rest.second - begin) + 1.0);
       const auto indices = getEnds(piece.Weights, axis);

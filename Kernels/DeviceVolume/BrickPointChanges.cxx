@@ -12,7 +12,7 @@
 namespace deformvolume
 {
 
-BrickPoints::NodesBefore::NodesBefore(const std::vector<TetrahedronChange>& changes)
+BrickPoints::PreviousNodes::PreviousNodes(const std::vector<TetrahedronChange>& changes)
 {
   this->Users.reserve(4 * changes.size());
   for (std::size_t i = 0; i < changes.size(); ++i)
@@ -35,7 +35,7 @@ BrickPoints::NodesBefore::NodesBefore(const std::vector<TetrahedronChange>& chan
 }
 
 std::vector<BrickPoints::ChangesOfBrick> BrickPoints::FindBricks(
-  const NodesBefore& nodes, const std::function<bool(std::size_t)>& isNear) const
+  const PreviousNodes& nodes, const std::function<bool(std::size_t)>& isNear) const
 {
   const std::size_t bricks = this->Begins.size();
   std::vector<ChangesOfBrick> found;
@@ -53,7 +53,7 @@ std::vector<BrickPoints::ChangesOfBrick> BrickPoints::FindBricks(
         }
         std::vector<std::size_t> touched;
         std::vector<std::size_t> whole;
-        this->AnyOf(brick,
+        this->AnyRange(brick,
           [&](std::size_t first, std::size_t past)
           {
             // A fast test: most ranges have none of these nodes.
@@ -138,7 +138,7 @@ BrickPoints BrickPoints::Join(const std::vector<std::vector<std::size_t>>& sets)
     joined.FieldSize = this->FieldSize;
     for (const std::vector<std::size_t>& bricks : sets)
     {
-      Extent all{ { 0, -1, 0, -1, 0, -1 } };
+      Extent all = EmptyExtent;
       for (const std::size_t brick : bricks)
       {
         Include(all, this->Boxes[brick]);
@@ -152,7 +152,7 @@ BrickPoints BrickPoints::Join(const std::vector<std::vector<std::size_t>>& sets)
     std::vector<Range> all;
     for (const std::size_t brick : bricks)
     {
-      this->AnyOf(brick,
+      this->AnyRange(brick,
         [&](std::size_t begin, std::size_t end)
         {
           all.push_back({ static_cast<std::int32_t>(begin), static_cast<std::int32_t>(end) });

@@ -12,11 +12,11 @@ namespace deformvolume
 {
 
 // The nodes that move the vertices of a brick, and the largest excess of their weights
-// (GetExcess()).
-struct BrickPoints::Needs
+// (GetNegativeWeightSum()).
+struct BrickPoints::BrickNodes
 {
   std::vector<std::int32_t> Nodes;
-  double Excess = 0.0;
+  double NegativeWeightSum = 0.0;
 
   // Adds the weights of the first three nodes of a vertex.
   template <typename T>
@@ -25,9 +25,10 @@ struct BrickPoints::Needs
     const double excess = std::max(0.0, -double(a)) + std::max(0.0, -double(b)) +
       std::max(0.0, -double(c)) + std::max(0.0, double(a) + double(b) + double(c) - 1.0);
     // The negated comparison is true for NaN, too.
-    if (!(excess <= this->Excess))
+    if (!(excess <= this->NegativeWeightSum))
     {
-      this->Excess = std::isfinite(excess) ? excess : std::numeric_limits<double>::infinity();
+      this->NegativeWeightSum =
+        std::isfinite(excess) ? excess : std::numeric_limits<double>::infinity();
     }
   }
 };
@@ -46,10 +47,10 @@ void ForNodes(const Tetrahedron& nodeOffsets, Use&& use)
 
 // Tests whether an element is new to a brick. Stores for each element the number of the last brick
 // to which the element was added, plus 1.
-class Marks
+class BrickMarks
 {
 public:
-  explicit Marks(std::size_t count)
+  explicit BrickMarks(std::size_t count)
     : Last(count)
   {
   }
@@ -68,10 +69,10 @@ private:
 
 } // namespace
 
-void BrickPoints::Append(const Needs& needs)
+void BrickPoints::Append(const BrickNodes& brickNodes)
 {
   this->Begins.push_back(this->Ranges.size());
-  for (const std::int32_t node : needs.Nodes)
+  for (const std::int32_t node : brickNodes.Nodes)
   {
     if (this->Ranges.size() > this->Begins.back() && this->Ranges.back().End == node)
     {
@@ -83,25 +84,25 @@ void BrickPoints::Append(const Needs& needs)
     }
   }
   this->Ends.push_back(this->Ranges.size());
-  this->Excess.push_back(needs.Excess);
+  this->NegativeWeightSum.push_back(brickNodes.NegativeWeightSum);
 }
 
-// visit(vertices, needs, add) must call add(tetrahedron) for each tetrahedron to which vertices are
-// linked.
+// visit(vertices, brickNodes, add) must call add(tetrahedron) for each tetrahedron to which
+// vertices are linked.
 template <typename Visit>
 void BrickPoints::Collect(const BrickGrid& grid, const Mesh& mesh, Visit&& visit)
 {
   const std::size_t bricks = grid.GetNumberOfBricks();
-  std::vector<Needs> needs(bricks);
+  std::vector<BrickNodes> found(bricks);
   const std::size_t parts = std::min(static_cast<std::size_t>(GetProcessorShare()), bricks);
   const auto collect = [&](std::size_t part)
   {
-    Marks tetrahedra(mesh.NumberOfTetrahedra);
-    Marks nodes(mesh.NumberOfNodes);
+    BrickMarks tetrahedra(mesh.NumberOfTetrahedra);
+    BrickMarks nodes(mesh.NumberOfNodes);
     for (std::size_t brick = part; brick < bricks; brick += parts)
     {
-      Needs& need = needs[brick];
-      need.Nodes.reserve(64);
+      BrickNodes& brickNodes = found[brick];
+      brickNodes.Nodes.reserve(64);
       const auto add = [&](std::int32_t tetrahedron)
       {
         if (tetrahedra.Add(tetrahedron, brick))
@@ -111,23 +112,23 @@ void BrickPoints::Collect(const BrickGrid& grid, const Mesh& mesh, Visit&& visit
             {
               if (nodes.Add(node, brick))
               {
-                need.Nodes.push_back(node);
+                brickNodes.Nodes.push_back(node);
               }
             });
         }
       };
-      visit(grid.GetVertices(brick, grid.Halo), need, add);
+      visit(grid.GetVertices(brick, grid.Halo), brickNodes, add);
       if (!mesh.Boundary.empty())
       {
         std::for_each(mesh.Boundary[brick].begin(), mesh.Boundary[brick].end(), add);
       }
-      std::sort(need.Nodes.begin(), need.Nodes.end());
+      std::sort(brickNodes.Nodes.begin(), brickNodes.Nodes.end());
     }
   };
   ParallelForParts(parts, 1, [&](std::size_t part, std::size_t) { collect(part); });
-  for (const Needs& need : needs)
+  for (const BrickNodes& nodes : found)
   {
-    this->Append(need);
+    this->Append(nodes);
   }
 }
 
@@ -135,7 +136,7 @@ BrickPoints BrickPoints::FromLinks(const BrickGrid& grid, const VertexLink* link
 {
   BrickPoints points;
   points.Collect(grid, mesh,
-    [&](const Extent& vertices, Needs& needs, const auto& add)
+    [&](const Extent& vertices, BrickNodes& brickNodes, const auto& add)
     {
       for (std::int64_t z = vertices[4]; z <= vertices[5]; ++z)
       {
@@ -147,7 +148,7 @@ BrickPoints BrickPoints::FromLinks(const BrickGrid& grid, const VertexLink* link
             if (row[x].Tetrahedron >= 0)
             {
               add(row[x].Tetrahedron);
-              needs.AddWeights(row[x].Weights[0], row[x].Weights[1], row[x].Weights[2]);
+              brickNodes.AddWeights(row[x].Weights[0], row[x].Weights[1], row[x].Weights[2]);
             }
           }
         }
@@ -160,7 +161,7 @@ BrickPoints BrickPoints::FromRuns(const BrickGrid& grid, const Runs& runs, const
 {
   BrickPoints points;
   points.Collect(grid, mesh,
-    [&](const Extent& vertices, Needs& needs, const auto& add)
+    [&](const Extent& vertices, BrickNodes& brickNodes, const auto& add)
     {
       for (std::int64_t z = vertices[4]; z <= vertices[5]; ++z)
       {
@@ -192,7 +193,7 @@ BrickPoints BrickPoints::FromRuns(const BrickGrid& grid, const Runs& runs, const
                 weights[k] = record[3 + k] + gradient[0] * offset[0] + gradient[1] * offset[1] +
                   gradient[2] * offset[2];
               }
-              needs.AddWeights(weights[0], weights[1], weights[2]);
+              brickNodes.AddWeights(weights[0], weights[1], weights[2]);
             }
           }
         }

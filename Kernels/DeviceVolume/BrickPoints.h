@@ -25,7 +25,8 @@ class BrickPoints
 {
 public:
   BrickPoints() = default;
-  /// The tetrahedra of a mesh, as on the device (DEFORMVOLUME_NODE_STRIDE).
+  /// The tetrahedra of a mesh. Numbers of nodes are multiplied by DEFORMVOLUME_NODE_STRIDE, as in
+  /// the buffer on the device.
   struct Mesh
   {
     const Tetrahedron* Tetrahedra;
@@ -44,6 +45,7 @@ public:
     const std::int32_t* Owners;
   };
   ///@{
+  /// Find the nodes of a mesh that move the vertices of each brick.
   static BrickPoints FromLinks(const BrickGrid& grid, const VertexLink* links, const Mesh& mesh);
   static BrickPoints FromRuns(const BrickGrid& grid, const Runs& runs, const Mesh& mesh);
   ///@}
@@ -52,15 +54,15 @@ public:
   static BrickPoints FromField(
     const BrickGrid& grid, const FieldParameters& field, const std::vector<Extent>& boundary);
   /// Returns the points of sets of bricks, with one element for each set. Use the result for
-  /// AnyOf() and IsApart() only.
+  /// AnyRange() and IsOutside() only.
   BrickPoints Join(const std::vector<std::vector<std::size_t>>& sets) const;
 
   bool IsEmpty() const { return this->Begins.empty() && this->Boxes.empty(); }
 
   /// The previous nodes of changed tetrahedra.
-  struct NodesBefore
+  struct PreviousNodes
   {
-    explicit NodesBefore(const std::vector<TetrahedronChange>& changes);
+    explicit PreviousNodes(const std::vector<TetrahedronChange>& changes);
     std::vector<std::pair<std::int32_t, std::uint32_t>> Users; // nodes and changes, sorted
     std::vector<int> NumbersOfNodes;                           // different nodes of each change
     PointSet Used;                                             // all previous nodes
@@ -70,17 +72,17 @@ public:
   /// of changes. A brick may be found that depends on these nodes by other tetrahedra only.
   using ChangesOfBrick = std::pair<std::size_t, std::vector<std::size_t>>;
   std::vector<ChangesOfBrick> FindBricks(
-    const NodesBefore& nodes, const std::function<bool(std::size_t)>& isNear) const;
+    const PreviousNodes& nodes, const std::function<bool(std::size_t)>& isNear) const;
   /// Adds the new nodes of the changed tetrahedra to the bricks. No brick may be listed twice.
   void AddPoints(
     const std::vector<ChangesOfBrick>& bricks, const std::vector<TetrahedronChange>& changes);
   /// Whether the lists of added points have become long, so that new BrickPoints are faster.
-  bool AreOverloaded() const { return this->NumberOfAdded > this->Ranges.size() / 2 + 4096; }
+  bool ShouldRebuild() const { return this->NumberOfAdded > this->Ranges.size() / 2 + 4096; }
 
   /// Calls body(begin, end) for the ranges of the points of a brick, until body returns true.
   /// Returns whether body has returned true.
   template <typename Body>
-  bool AnyOf(std::size_t brick, Body&& body) const
+  bool AnyRange(std::size_t brick, Body&& body) const
   {
     if (this->Boxes.empty())
     {
@@ -124,7 +126,7 @@ public:
   const std::vector<Extent>& GetBoxes() const { return this->Boxes; }
 
   /// Whether all points of a brick are certainly outside the range from begin to end - 1.
-  bool IsApart(std::size_t brick, std::size_t begin, std::size_t end) const
+  bool IsOutside(std::size_t brick, std::size_t begin, std::size_t end) const
   {
     if (!this->Boxes.empty())
     {
@@ -146,21 +148,21 @@ public:
   /// Largest absolute sum of the negative weights of a vertex in the brick. The displacement of a
   /// vertex exceeds the range of the displacements of its points by at most this number times the
   /// size of the range.
-  double GetExcess(std::size_t brick) const
+  double GetNegativeWeightSum(std::size_t brick) const
   {
-    return this->Excess.empty() ? 0.0 : this->Excess[brick];
+    return this->NegativeWeightSum.empty() ? 0.0 : this->NegativeWeightSum[brick];
   }
 
-  /// Whether a brick may have vertices whose displacement fades outside a field, and therefore is
-  /// smaller than the displacements of all points of the brick.
+  /// Whether bricks may have vertices whose displacement fades outside a field, and therefore is
+  /// smaller than the displacements of all points of their brick.
   bool IsFading() const { return this->Fades; }
 
 private:
-  struct Needs;
+  struct BrickNodes;
   template <typename Visit>
   void Collect(const BrickGrid& grid, const Mesh& mesh, Visit&& visit);
   /// Appends the points of the next brick, which must be in ascending order.
-  void Append(const Needs& needs);
+  void Append(const BrickNodes& brickNodes);
   /// Returns the number of nodes that are new to the brick.
   std::size_t AddPoints(const ChangesOfBrick& brick, const std::vector<TetrahedronChange>& changes);
 
@@ -174,7 +176,7 @@ private:
   std::vector<std::size_t> Begins; // for each brick, index of its first range in Ranges
   std::vector<std::size_t> Ends;   // for each brick, one past the index of its last range
   std::vector<Range> Ranges;
-  std::vector<double> Excess;
+  std::vector<double> NegativeWeightSum;
   std::vector<std::vector<std::int32_t>> Added; // points of each brick, not sorted; may be empty
   std::size_t NumberOfAdded = 0;
   // For a field: the box of points of each brick.

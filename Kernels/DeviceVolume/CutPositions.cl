@@ -4,11 +4,11 @@
 //
 // The copy of a vertex has the mean of displacements that are extrapolated from its neighbors on the other side:
 // vertices with which it shares an edge of a divided tetrahedron. There are three ways, in this order:
-// - CONTINUES: linear extrapolation from the neighbor and the next vertex in the same direction, on the side of the
-//   neighbor. So an affine deformation is reproduced.
-// - FOLLOWS: the displacement of the neighbor plus the change along this direction on the side of the vertex. Used if
-//   no neighbor has such a next vertex, as in a single layer of cells at the border of the volume.
-// - IS_CONSTANT: the displacement of the neighbor.
+// - EXTRAPOLATES_LINEARLY: linear extrapolation from the neighbor and the next vertex in the same direction, on the
+//   side of the neighbor. So an affine deformation is reproduced.
+// - EXTRAPOLATES_IN_PARALLEL: the displacement of the neighbor plus the change along this direction on the side of the
+//   vertex. Used if no neighbor has such a next vertex, as in a single layer of cells at the border of the volume.
+// - EXTRAPOLATES_CONSTANT: the displacement of the neighbor.
 // A vertex has one copy, which all of its tetrahedra use. All numbers are integers, so the order of neighbors does not
 // matter.
 //
@@ -16,14 +16,14 @@
 //   vertices   list of cut vertices (KernelParameters.h)
 //   stencils   for each cut vertex: neighbors to use, as bits (NEIGHBOR), and the way of extrapolation
 //   positions  for each cut vertex: position of its copy, and in the last component 0 if the copy coincides with the
-//              vertex. Tetrahedra with only such vertices need no copies. The bit DEFORMVOLUME_VERTEX_TOGETHER of the
+//              vertex. Tetrahedra with only such vertices need no copies. The bit DEFORMVOLUME_VERTEX_UNSPLIT of the
 //              state is set for such vertices.
 
 #define NEIGHBOR(dx, dy, dz) (1u << ((dz + 1) * 9 + (dy + 1) * 3 + dx + 1))
-#define CONTINUES 0
-#define FOLLOWS 1
-#define IS_CONSTANT 2
-#define IS_JOINED 3 // no extrapolation: undivided tetrahedra connect the vertex to its neighbors on the other side
+#define EXTRAPOLATES_LINEARLY 0
+#define EXTRAPOLATES_IN_PARALLEL 1
+#define EXTRAPOLATES_CONSTANT 2
+#define IS_CONNECTED 3 // no extrapolation: undivided tetrahedra connect the vertex to its neighbors on the other side
 
 
 // The list of cut vertices, and the masks of the chunk.
@@ -94,7 +94,7 @@ static void AddNeighbors(const CutMesh* mesh, int3 vertex, int side, int3 cell, 
     for (int k = 0; k < 4; ++k)
     {
       const int o = Tetrahedra[t][k] ^ mirror;
-      const int3 at = cell + (int3)(o & 1, o >> 2, o >> 1 & 1);
+      const int3 at = cell + (int3)(OFFSET_X(o), OFFSET_Y(o), OFFSET_Z(o));
       const uint bit = NEIGHBOR(at.x - vertex.x, at.y - vertex.y, at.z - vertex.z);
       all |= bit;
       if (crossed >> t & 1)
@@ -142,7 +142,7 @@ static int AreConnected(const CutMesh* mesh, int3 a, int3 b, const KernelParamet
 
 // Whether the change of the displacement between two vertices can be used on a side of the cut: the second vertex has a
 // position, is not on the other side, and is connected to the first one.
-static int Leads(const CutMesh* mesh, int3 from, int3 to, int side, const KernelParameters* p)
+static int CanExtrapolate(const CutMesh* mesh, int3 from, int3 to, int side, const KernelParameters* p)
 {
   return HasPosition(mesh, to.x, to.y, to.z, p) && SideOf(mesh, to.x, to.y, to.z, p) != 1 - side &&
     AreConnected(mesh, from, to, p);
@@ -169,7 +169,7 @@ __kernel void FindCutStencils(__global const uchar* state, __global const uchar*
   }
   if (apart & joined)
   {
-    stencils[i] = (uint2)(apart, IS_JOINED);
+    stencils[i] = (uint2)(apart, IS_CONNECTED);
     return;
   }
   uint found[3] = { 0, 0, 0 };
@@ -181,12 +181,14 @@ __kernel void FindCutStencils(__global const uchar* state, __global const uchar*
     {
       continue;
     }
-    const int way = Leads(&mesh, near, near + step, 1 - side, &p) ? CONTINUES
-      : Leads(&mesh, at, at - step, side, &p)                     ? FOLLOWS
-                                                                  : IS_CONSTANT;
+    const int way = CanExtrapolate(&mesh, near, near + step, 1 - side, &p) ? EXTRAPOLATES_LINEARLY
+      : CanExtrapolate(&mesh, at, at - step, side, &p)                     ? EXTRAPOLATES_IN_PARALLEL
+                                                                           : EXTRAPOLATES_CONSTANT;
     found[way] |= 1u << n;
   }
-  const int way = found[CONTINUES] ? CONTINUES : found[FOLLOWS] ? FOLLOWS : IS_CONSTANT;
+  const int way = found[EXTRAPOLATES_LINEARLY] ? EXTRAPOLATES_LINEARLY
+    : found[EXTRAPOLATES_IN_PARALLEL]          ? EXTRAPOLATES_IN_PARALLEL
+                                               : EXTRAPOLATES_CONSTANT;
   stencils[i] = (uint2)(found[way], way);
 }
 
@@ -194,14 +196,15 @@ static int3 WholeRestOf(const Mapping* m, int3 at, const KernelParameters* p)
 {
   const Rest rest = RestOf(m, at.x, at.y, at.z, p);
 #if HAS_TURNED_AXES
-  return rest.Whole.xyz + convert_int3_rte(rest.Fraction.xyz); // the sum of fractions is below 3
+  // Three fractions, each below 1, add up to less than 3, so their sum is rounded and not dropped.
+  return rest.Whole.xyz + convert_int3_rte(rest.Fraction.xyz);
 #else
   return rest.Whole.xyz;
 #endif
 }
 
 // The rounded displacement of a vertex, in 1/256 output voxel.
-static int3 StepsOf(const Mapping* m, int3 at, const KernelParameters* p)
+static int3 RoundedDisplacementOf(const Mapping* m, int3 at, const KernelParameters* p)
 {
   return PositionOf(m, at.x, at.y, at.z, p).xyz - WholeRestOf(m, at, p);
 }
@@ -238,9 +241,9 @@ static int IsInBricks(__global const uchar* wanted, int3 at, const KernelParamet
 }
 
 // Returns the position of the copy of a vertex. own: position of the vertex.
-static int4 OtherPosition(const Mapping* m, int3 at, uint2 stencil, int3 own, const KernelParameters* p)
+static int4 CopyPosition(const Mapping* m, int3 at, uint2 stencil, int3 own, const KernelParameters* p)
 {
-  if (stencil.y == IS_JOINED)
+  if (stencil.y == IS_CONNECTED)
   {
     return (int4)(own, 0);
   }
@@ -249,15 +252,15 @@ static int4 OtherPosition(const Mapping* m, int3 at, uint2 stencil, int3 own, co
   {
     const int n = 31 - clz(remaining & -remaining);
     const int3 step = (int3)(n % 3, n / 3 % 3, n / 9) - 1;
-    const int3 moved = StepsOf(m, at + step, p);
+    const int3 moved = RoundedDisplacementOf(m, at + step, p);
     sum += moved;
-    if (stencil.y == CONTINUES)
+    if (stencil.y == EXTRAPOLATES_LINEARLY)
     {
-      sum += moved - StepsOf(m, at + 2 * step, p);
+      sum += moved - RoundedDisplacementOf(m, at + 2 * step, p);
     }
-    else if (stencil.y == FOLLOWS)
+    else if (stencil.y == EXTRAPOLATES_IN_PARALLEL)
     {
-      sum += StepsOf(m, at - step, p) - StepsOf(m, at, p);
+      sum += RoundedDisplacementOf(m, at - step, p) - RoundedDisplacementOf(m, at, p);
     }
   }
   const int count = popcount(stencil.x);
@@ -293,8 +296,8 @@ __kernel void FindCutPositions(MAPPING_PARAMETERS, __global uchar* state, __glob
     return;
   }
   const int3 own = PositionOf(&m, at.x, at.y, at.z, &p).xyz; // the last component is undefined
-  const int4 other = OtherPosition(&m, at, stencil, own, &p);
+  const int4 other = CopyPosition(&m, at, stencil, own, &p);
   positions[i] = other;
-  state[vertex] = other.w ? state[vertex] & ~DEFORMVOLUME_VERTEX_TOGETHER
-                          : state[vertex] | DEFORMVOLUME_VERTEX_TOGETHER;
+  state[vertex] = other.w ? state[vertex] & ~DEFORMVOLUME_VERTEX_UNSPLIT
+                          : state[vertex] | DEFORMVOLUME_VERTEX_UNSPLIT;
 }

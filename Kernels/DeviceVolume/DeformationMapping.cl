@@ -41,7 +41,8 @@ typedef struct
 // A node in an array of nodes. offset: number of the node, times DEFORMVOLUME_NODE_STRIDE.
 #define NODE(nodes, offset) (*(__global const float4*)((__global const float2*)(nodes) + (offset)))
 
-#define LARGEST 4194303.0f // 1/256 voxels: about 2^14 voxels
+// The largest displacement, in steps of 1/256 voxel: 2^22 - 1, so that adding ROUND_TO_INTEGER is exact.
+#define LARGEST 4194303.0f
 #define ROUND_TO_INTEGER 12582912.0f // 1.5 * 2^23: (v + this) - this is v rounded to an integer
 #define FIELD_TOLERANCE 1e-3f // in cells of the field: rounding must not lose the field's border
 
@@ -67,7 +68,7 @@ static int StateOf(__global const uchar* state, int x, int y, int z, const Kerne
   const int isFirst = (x == 0) | (y == 0) | (z == 0);
   const int isLast = (x == p->Size[0] - 1) | (y == p->Size[1] - 1) | (z == p->Size[2] - 1);
   return DEFORMVOLUME_VERTEX_SOURCE | DEFORMVOLUME_VERTEX_REGULAR | DEFORMVOLUME_CELL_UNCROSSED |
-    DEFORMVOLUME_VERTEX_TOGETHER | (isFirst | isLast ? 0 : DEFORMVOLUME_VERTEX_INTERIOR) |
+    DEFORMVOLUME_VERTEX_UNSPLIT | (isFirst | isLast ? 0 : DEFORMVOLUME_VERTEX_INTERIOR) |
     (isLast ? 0 : DEFORMVOLUME_CELL_WHOLE);
 }
 

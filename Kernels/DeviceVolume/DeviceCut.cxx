@@ -16,8 +16,6 @@ namespace deformvolume
 namespace
 {
 
-constexpr int FiveTetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
-
 struct CrossedCell
 {
   int X, Y;
@@ -47,11 +45,11 @@ std::vector<std::vector<CrossedCell>> FindCells(
 }
 
 // Builds the list of cut vertices plane by plane.
-class ListBuilder
+class CutVertexListBuilder
 {
 public:
-  ListBuilder(const VoxelGrid& voxelGrid, const float* distances)
-    : Shape(voxelGrid)
+  CutVertexListBuilder(const VoxelGrid& voxelGrid, const float* distances)
+    : Grid(voxelGrid)
     , Distances(distances)
   {
     for (int axis = 0; axis < 3; ++axis)
@@ -87,7 +85,7 @@ private:
   // Marks the vertices of cells of a layer in its lower (upper = 0) or upper plane (upper = 1).
   void Mark(const std::vector<CrossedCell>& cells, int layer, int upper)
   {
-    const Extent& extent = this->Shape.VertexExtent;
+    const Extent& extent = this->Grid.VertexExtent;
     for (const CrossedCell& cell : cells)
     {
       const int mirror =
@@ -138,7 +136,7 @@ private:
     }
   }
 
-  const VoxelGrid& Shape;
+  const VoxelGrid& Grid;
   const float* Distances;
   std::array<std::size_t, 3> Size{};
   std::vector<unsigned char> Plane;
@@ -206,7 +204,7 @@ std::vector<Extent> DeviceCut::Set(const OpenCLContext& context, const cl::Comma
     {
       cells[axis] = static_cast<int>(GetSize(voxelGrid.VertexExtent, axis)) - 1;
     }
-    ListBuilder(voxelGrid, distances).Build(FindCells(cells, crossed), list, rows);
+    CutVertexListBuilder(voxelGrid, distances).Build(FindCells(cells, crossed), list, rows);
   }
   std::vector<Extent> changes = FindChanges(this->List, list);
   if (!changes.empty())
@@ -240,7 +238,7 @@ void DeviceCut::Send(const OpenCLContext& context, const cl::CommandQueue& queue
 }
 
 void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
-  const KernelParameters& p, const VolumeChunk& chunk, const Source& source,
+  const KernelParameters& p, const VolumeChunk& chunk, const Inputs& inputs,
   const std::vector<unsigned char>& wanted)
 {
   // Each chunk has its own states, so vertices between two chunks are processed for both.
@@ -257,7 +255,7 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   if (!this->StencilsCurrent)
   {
     context.Launch(queue,
-      MakeKernel(source.Program, "FindCutStencils", source.State, source.Active, this->Rows,
+      MakeKernel(inputs.Program, "FindCutStencils", inputs.State, inputs.Active, this->Rows,
         this->Vertices, this->Stencils, begin, end, p),
       items, cl::NDRange(group));
   }
@@ -267,9 +265,9 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
     Reserve(context, this->Wanted, wanted.size());
     queue.enqueueWriteBuffer(this->Wanted, CL_TRUE, 0, wanted.size(), wanted.data());
   }
-  cl::Kernel kernel(source.Program, "FindCutPositions");
+  cl::Kernel kernel(inputs.Program, "FindCutPositions");
   // Any buffer may replace a missing buffer.
-  deformvolume::SetArguments(kernel, source.SetMapping(kernel, chunk), source.State, this->Vertices,
+  deformvolume::SetArguments(kernel, inputs.SetMapping(kernel, chunk), inputs.State, this->Vertices,
     this->Stencils, this->Positions, some ? this->Wanted : this->Stencils, cl_int{ some }, begin,
     end, p);
   context.Launch(queue, kernel, items, cl::NDRange(group));

@@ -30,10 +30,10 @@ public:
   bool IsOn() const { return !this->List.empty(); }
   const std::vector<CutVertex>& GetList() const { return this->List; }
   /// Makes the next update compute the stencils, since states or active tetrahedra have changed.
-  void ForgetStencils() { this->StencilsCurrent = false; }
+  void InvalidateStencils() { this->StencilsCurrent = false; }
 
   /// The data on which the positions of the copies in a chunk depend.
-  struct Source
+  struct Inputs
   {
     cl::Program Program; // of the deformation mapping
     const MappingSetter& SetMapping;
@@ -44,7 +44,7 @@ public:
   /// whether positions of its vertices may have changed; empty: all may have changed. If the
   /// stencils must be computed, all positions are computed. Call Finish() after all chunks.
   void Update(OpenCLContext& context, const cl::CommandQueue& queue, const KernelParameters& p,
-    const VolumeChunk& chunk, const Source& source, const std::vector<unsigned char>& wanted);
+    const VolumeChunk& chunk, const Inputs& inputs, const std::vector<unsigned char>& wanted);
   void Finish() { this->StencilsCurrent = true; }
 
   ///@{

@@ -89,7 +89,7 @@ void DeviceMask::Write(
   const cl::CommandQueue& queue, VolumeChunk& chunk, const std::vector<Extent>& changes) const
 {
   const std::array<int, 2> planes = this->GetPlanes(chunk);
-  Extent box{ { 0, -1, 0, -1, 0, -1 } };
+  Extent box = EmptyExtent;
   for (const Extent& change : changes)
   {
     if (change[4] <= planes[1] && change[5] >= planes[0])
@@ -165,7 +165,7 @@ std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::Comm
         range[1] * static_cast<std::size_t>(width) } };
     }
   }
-  const PointRanges* news = this->WithBuffers && next && written ? &bytes : nullptr;
+  const PointRanges* validChanges = this->WithBuffers && next && written ? &bytes : nullptr;
   if (!this->WithBuffers)
   {
     if (!this->IsAny(wanted))
@@ -176,7 +176,8 @@ std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::Comm
   }
   if (!this->Last.empty())
   {
-    changes = FindMaskChanges(this->Size, this->MakeValues(this->Last.data(), 255), wanted, news);
+    changes =
+      FindMaskChanges(this->Size, this->MakeValues(this->Last.data(), 255), wanted, validChanges);
     copy(this->Last.data());
     for (VolumeChunk& chunk : chunks)
     {
@@ -187,7 +188,7 @@ std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::Comm
   {
     const MappedBuffer<unsigned char> last(
       queue, this->GetBuffer(chunks.front()), CL_MAP_READ | CL_MAP_WRITE);
-    changes = FindMaskChanges(this->Size, this->MakeValues(last.Get(), 255), wanted, news);
+    changes = FindMaskChanges(this->Size, this->MakeValues(last.Get(), 255), wanted, validChanges);
     copy(last.Get());
   }
   if (!next)

@@ -83,7 +83,7 @@ void DeviceMasks::SetCoincidentNodes(const std::vector<std::int32_t>& numbers)
   this->Bridges.SetCoincidentNodes(this->Context, this->Queue, numbers);
   if (had != this->Bridges.HasCoincidentNodes())
   {
-    this->States.Forget();
+    this->States.Invalidate();
     for (VolumeChunk& chunk : this->Chunks)
     {
       chunk.ResampledTetrahedra = cl::Buffer();
@@ -98,7 +98,7 @@ void DeviceMasks::SetBoundary(const MeshBoundary& boundary)
     return;
   }
   this->Queue.finish(); // no command may use the buffers that are released
-  this->States.Forget();
+  this->States.Invalidate();
   this->Bridges.SetBoundary(!boundary.IsEmpty());
   const std::int64_t layer = static_cast<std::int64_t>(this->Size[0] - 1) * (this->Size[1] - 1);
   for (VolumeChunk& chunk : this->Chunks)

@@ -3,12 +3,12 @@
 #define DeformVolumeDeviceMasks_h
 
 #include "BrickGrid.h"
-#include "BridgeMask.h"
 #include "DeviceCut.h"
 #include "DeviceMask.h"
 #include "Extent.h"
 #include "MeshBoundary.h"
 #include "OpenCLContext.h"
+#include "ResampledMask.h"
 #include "VertexStates.h"
 #include "VolumeChunk.h"
 #include "VoxelGrid.h"
@@ -21,7 +21,7 @@ namespace deformvolume
 {
 
 /// The masks of a volume on the device: blanked voxels, active tetrahedra, boundary distances, a
-/// smooth cut, and BridgeMask.
+/// smooth cut, and ResampledMask.
 class DeviceMasks
 {
 public:
@@ -32,9 +32,10 @@ public:
     VertexStates& states);
 
   ///@{
-  /// Set a mask of vertices or cells; null: no mask. Copies the differences to the last mask, and
-  /// returns the boxes of changes (DeviceMask::Set()). bits: the bits of a byte that blank a voxel.
-  /// If BridgeMask is on, DeviceVolume::UpdateBridges() returns the changes of cells.
+  /// Set a mask of vertices or cells; null: no mask. Uploads only bytes that differ from the mask
+  /// on the device, and returns the boxes that contain them (DeviceMask::Set()). bits: the bits of
+  /// a byte that blank a voxel. If ResampledMask is on, DeviceVolume::UpdateResampledMask() returns
+  /// the changes of cells.
   std::vector<Extent> SetBlanked(
     const unsigned char* blanked, unsigned char bits, const PointRanges* written);
   std::vector<Extent> SetActive(const unsigned char* active, const PointRanges* written);
@@ -43,14 +44,14 @@ public:
   /// Set a smooth cut (DeviceCut::Set()). hasRoom: whether chunks have the planes that it needs.
   /// Returns the boxes of vertices whose entries have changed. Throws Error without room.
   std::vector<Extent> SetCut(const unsigned char* crossed, const float* distances, bool hasRoom);
-  /// Excludes bridges over a split of the mesh. numbers: see BridgeMask::SetCoincidentNodes().
+  /// Excludes bridges over a split of the mesh. numbers: see ResampledMask::SetCoincidentNodes().
   void SetCoincidentNodes(const std::vector<std::int32_t>& numbers);
   /// Excludes the cells that the boundary of the deformation mesh, or of the field, crosses.
   void SetBoundary(const MeshBoundary& boundary);
 
   /// Whether there is any mask, apart from a smooth cut.
   bool HasAny() const { return this->HasActive() || this->HasBlanked() || this->HasDistances(); }
-  /// Whether kernels need a mask of active tetrahedra: one that is set, or BridgeMask.
+  /// Whether kernels need a mask of active tetrahedra: one that is set, or ResampledMask.
   bool HasActive() const { return this->HasGivenActive() || this->Bridges.IsOn(); }
   bool HasGivenActive() const { return this->Active.HasBuffers(); }
   bool HasBlanked() const { return this->Blanked.HasBuffers(); }
@@ -79,8 +80,8 @@ public:
   ///@}
   DeviceCut& GetCut() { return this->Cut; }
   const DeviceCut& GetCut() const { return this->Cut; }
-  BridgeMask& GetBridges() { return this->Bridges; }
-  const BridgeMask& GetBridges() const { return this->Bridges; }
+  ResampledMask& GetResampledMask() { return this->Bridges; }
+  const ResampledMask& GetResampledMask() const { return this->Bridges; }
 
 private:
   OpenCLContext& Context;
@@ -95,7 +96,7 @@ private:
   DeviceMask Active{ DeviceMask::Kind::ActiveTetrahedra };
   DeviceMask Distances{ DeviceMask::Kind::BoundaryDistances };
   DeviceCut Cut;
-  BridgeMask Bridges;
+  ResampledMask Bridges;
 };
 
 } // namespace deformvolume

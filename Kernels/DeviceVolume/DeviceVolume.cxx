@@ -42,10 +42,10 @@ DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue
   bool withLinks)
   : Context(context)
   , Queue(queue)
-  , Shape(voxelGrid)
+  , Grid(voxelGrid)
   , Bricks(voxelGrid)
   , Arrays(context, queue, this->Bricks.Size, allocationLimit, this->Chunks)
-  , Masks(context, queue, this->Shape, allocationLimit, this->Bricks, this->Chunks, this->States)
+  , Masks(context, queue, this->Grid, allocationLimit, this->Bricks, this->Chunks, this->States)
   , Mapping(context, queue, this->Bricks.Size, allocationLimit)
 {
   const std::int64_t plane = static_cast<std::int64_t>(this->GetSize(0)) * this->GetSize(1);
@@ -90,7 +90,7 @@ void DeviceVolume::ForgetMesh()
   this->Masks.SetCoincidentNodes({});
   this->SetBoundary({}, false);
   this->Mapping.Forget(this->Chunks);
-  this->States.Forget();
+  this->States.Invalidate();
 }
 
 void DeviceVolume::SetRuns(const VertexRuns& runs)
@@ -108,13 +108,13 @@ void DeviceVolume::SetBoundary(const MeshBoundary& boundary, bool isField)
 {
   this->Masks.SetBoundary(boundary);
   this->AtBoundary = FindBoundaryDependencies(
-    boundary, isField, this->Shape.VertexExtent, this->Bricks.GetSubBricks());
+    boundary, isField, this->Grid.VertexExtent, this->Bricks.GetSubBricks());
 }
 
-std::vector<Extent> DeviceVolume::UpdateBridges(
-  MappingForm mapping, const cl::Buffer& tetrahedra, const MappingSetter& set)
+std::vector<Extent> DeviceVolume::UpdateResampledMask(
+  MappingKind mapping, const cl::Buffer& tetrahedra, const MappingSetter& set)
 {
-  BridgeMask& bridges = this->Masks.GetBridges();
+  ResampledMask& bridges = this->Masks.GetResampledMask();
   std::vector<Extent> changes;
   if (bridges.IsCurrent())
   {
@@ -123,7 +123,7 @@ std::vector<Extent> DeviceVolume::UpdateBridges(
   const cl::Buffer& other = this->RestPositions; // a kernel's argument in place of a missing buffer
   const DeviceCut& cut = this->Masks.GetCut();
   const cl::Program program =
-    GetBridgeProgram(this->Context, mapping, cut.IsOn(), this->HasTurnedAxes());
+    GetResampledMaskProgram(this->Context, mapping, cut.IsOn(), this->HasTurnedAxes());
   for (VolumeChunk& chunk : this->Chunks)
   {
     bridges.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
@@ -143,11 +143,11 @@ KernelParameters DeviceVolume::GetParameters(const VolumeChunk& chunk) const
   for (int axis = 0; axis < 3; ++axis)
   {
     p.Size[axis] = this->GetSize(axis);
-    p.First[axis] = this->Shape.VertexExtent[2 * axis];
+    p.First[axis] = this->Grid.VertexExtent[2 * axis];
     p.BrickOrigin[axis] = this->Bricks.Origin[axis];
     p.BrickCount[axis] = this->Bricks.Count[axis];
   }
-  p.IsMirrored = this->Shape.ToOutput.GetDeterminant() < 0.0;
+  p.IsMirrored = this->Grid.ToOutput.GetDeterminant() < 0.0;
   p.ChunkFirst = chunk.PlanesBegin;
   p.PlanesBegin = chunk.PlanesBegin;
   p.PlanesEnd = chunk.PlanesEnd;
@@ -166,7 +166,7 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll, const 
     return;
   }
   DeviceCut& cut = this->Masks.GetCut();
-  cut.ForgetStencils();
+  cut.InvalidateStencils();
   this->WithState = this->Masks.HasAny() || cut.IsOn() ||
     !(this->HasMesh() ? this->Mapping.AreAllLinked() : movesAll);
   if (!this->WithState)

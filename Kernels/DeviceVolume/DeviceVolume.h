@@ -58,10 +58,10 @@ public:
   /// the tetrahedra or points of the field that move them. isField: whether it is the boundary of a
   /// displacement field.
   void SetBoundary(const MeshBoundary& boundary, bool isField);
-  /// Updates BridgeMask, if anything on which it depends has changed. Returns the boxes of cells
+  /// Updates ResampledMask, if anything on which it depends has changed. Returns the boxes of cells
   /// whose mask has changed.
-  std::vector<Extent> UpdateBridges(
-    MappingForm mapping, const cl::Buffer& tetrahedra, const MappingSetter& set);
+  std::vector<Extent> UpdateResampledMask(
+    MappingKind mapping, const cl::Buffer& tetrahedra, const MappingSetter& set);
 
   ///@{
   /// Set the static mapping. The links or runs must have been checked (CheckLinks(), CheckRuns()).
@@ -70,10 +70,10 @@ public:
   ///@}
   /// Frees the links or the runs.
   void ForgetMesh();
-  const VoxelGrid& GetVoxelGrid() const { return this->Shape; }
+  const VoxelGrid& GetVoxelGrid() const { return this->Grid; }
   int GetSize(int axis) const
   {
-    return static_cast<int>(deformvolume::GetSize(this->Shape.VertexExtent, axis));
+    return static_cast<int>(deformvolume::GetSize(this->Grid.VertexExtent, axis));
   }
   bool HasMesh() const { return this->Mapping.HasLinks() || this->Mapping.HasRuns(); }
   bool HasRuns() const { return this->Mapping.HasRuns(); }
@@ -82,7 +82,7 @@ public:
   const std::vector<VolumeChunk>& GetChunks() const { return this->Chunks; }
 
   /// Whether the axes of the volume are not those of the output (HAS_TURNED_AXES in programs).
-  bool HasTurnedAxes() const { return !this->Shape.ToOutput.IsDiagonal(); }
+  bool HasTurnedAxes() const { return !this->Grid.ToOutput.IsDiagonal(); }
   /// The undeformed position for each index on x, then y, then z (RestPosition or RestVector in
   /// KernelParameters.h).
   const cl::Buffer& GetRestPositions() const { return this->RestPositions; }
@@ -114,7 +114,7 @@ public:
   /// (DEFORMVOLUME_BRICK_BITS); null: all.
   void UpdateCut(
     const cl::Program& mapping, const std::vector<cl_uint>* bricks, const MappingSetter& set);
-  void ForgetState() { this->States.Forget(); }
+  void InvalidateState() { this->States.Invalidate(); }
   /// Returns the states of a chunk, or any buffer if there are none.
   const cl::Buffer& GetState(const VolumeChunk& chunk) const
   {
@@ -129,7 +129,7 @@ public:
 private:
   OpenCLContext& Context;
   cl::CommandQueue Queue;
-  VoxelGrid Shape;
+  VoxelGrid Grid;
   BrickGrid Bricks;
   bool HasRoomForCuts = true;
   std::vector<VolumeChunk> Chunks;

@@ -9,7 +9,7 @@ namespace deformvolume
 
 /// The form of the deformation mapping, by which kernels compute the displacement of a vertex
 /// (MAPPING in DeformationMapping.cl).
-enum class MappingForm
+enum class MappingKind
 {
   Links,
   Runs,
@@ -22,11 +22,11 @@ enum class MappingForm
 /// vertices (VertexState.cl). withCut: whether there is a smooth cut (CutPositions.cl).
 /// hasTurnedAxes: see DeviceVolume.
 cl::Program GetMappingProgram(
-  OpenCLContext& context, MappingForm mapping, bool withCut = false, bool hasTurnedAxes = false);
+  OpenCLContext& context, MappingKind mapping, bool withCut = false, bool hasTurnedAxes = false);
 
-/// Returns the program of the mask of bridges (BridgeMask.cl), for links or runs.
-cl::Program GetBridgeProgram(
-  OpenCLContext& context, MappingForm mapping, bool withCut = false, bool hasTurnedAxes = false);
+/// Returns the program of the mask of bridges (ResampledMask.cl), for links or runs.
+cl::Program GetResampledMaskProgram(
+  OpenCLContext& context, MappingKind mapping, bool withCut = false, bool hasTurnedAxes = false);
 
 /// Returns the program that converts vectors to displacements (VectorConversion.cl) and computes
 /// bounds (VectorBounds.cl).
@@ -34,7 +34,7 @@ cl::Program GetConversionProgram(OpenCLContext& context);
 
 /// Returns the source text of a form of the mapping (DeformationMapping.cl). It must follow
 /// GetSamplingMeshText().
-ProgramText GetMappingText(MappingForm mapping, bool hasTurnedAxes = false);
+ProgramText GetMappingText(MappingKind mapping, bool hasTurnedAxes = false);
 
 } // namespace deformvolume
 

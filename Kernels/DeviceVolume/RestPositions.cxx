@@ -70,8 +70,8 @@ cl::Buffer MakeRestPositions(const OpenCLContext& context, const VoxelGrid& grid
   const IndexBounds bounds = transform.ToOutput(GetBox(grid));
   for (int axis = 0; axis < 3; ++axis)
   {
-    if (!(std::abs(bounds.Min[axis]) <= MostOutputIndex &&
-          std::abs(bounds.Max[axis]) <= MostOutputIndex))
+    if (!(std::abs(bounds.Min[axis]) <= MaxOutputIndex &&
+          std::abs(bounds.Max[axis]) <= MaxOutputIndex))
     {
       throw Error("The voxels at rest have output indices from " + FormatNumber(bounds.Min[axis]) +
         " to " + FormatNumber(bounds.Max[axis]) +

@@ -11,7 +11,7 @@
 namespace deformvolume
 {
 
-void VertexStates::Forget()
+void VertexStates::Invalidate()
 {
   this->Current = false;
   this->Known = false;
@@ -48,7 +48,7 @@ void VertexStates::Release(std::vector<VolumeChunk>& chunks)
 }
 
 void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
-  const KernelParameters& p, VolumeChunk& chunk, const Source& source)
+  const KernelParameters& p, VolumeChunk& chunk, const Inputs& inputs)
 {
   const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0]) *
     static_cast<std::uint64_t>(p.Size[1]) * static_cast<std::uint64_t>(p.PlanesEnd - p.PlanesBegin);
@@ -69,14 +69,14 @@ void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Buffer marked(
     context.GetContext(), CL_MEM_READ_WRITE, atOnce * VertexCuboids::NumberOfVertices);
   const QueueGuard guard(queue);
-  cl::Kernel mark(source.Mapping, "MarkSources");
-  SetArguments(mark, source.SetMapping(mark, chunk), source.Blanked, cl_int{ source.HasBlanked },
-    source.Distances, chunk.State, list, p);
+  cl::Kernel mark(inputs.Mapping, "MarkSources");
+  SetArguments(mark, inputs.SetMapping(mark, chunk), inputs.Blanked, cl_int{ inputs.HasBlanked },
+    inputs.Distances, chunk.State, list, p);
   VertexCuboids::ForAll(context, queue, sources, list,
     [&](const VertexCuboids::Launch& launch, std::size_t, std::size_t) { launch(mark); });
-  const cl::Kernel find = MakeKernel(source.Mapping, "MarkVertices", chunk.State, source.Active,
-    source.CutRows, source.CutVertices, marked, list, p);
-  const cl::Kernel store = MakeKernel(source.Mapping, "StoreStates", marked, chunk.State, list, p);
+  const cl::Kernel find = MakeKernel(inputs.Mapping, "MarkVertices", chunk.State, inputs.Active,
+    inputs.CutRows, inputs.CutVertices, marked, list, p);
+  const cl::Kernel store = MakeKernel(inputs.Mapping, "StoreStates", marked, chunk.State, list, p);
   VertexCuboids::ForAll(context, queue, vertices, list,
     [&](const VertexCuboids::Launch& launch, std::size_t, std::size_t)
     {

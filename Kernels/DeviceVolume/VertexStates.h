@@ -18,7 +18,7 @@ class VertexStates
 {
 public:
   /// The data on which the states of a chunk depend. Any buffer may replace a missing buffer.
-  struct Source
+  struct Inputs
   {
     cl::Program Mapping; // of the deformation mapping
     const MappingSetter& SetMapping;
@@ -31,7 +31,7 @@ public:
   };
 
   /// Makes the next update compute all states.
-  void Forget();
+  void Invalidate();
   /// Reports vertices that may have become sources, or are no longer sources.
   void ChangeSources(const std::vector<Extent>& vertices);
   /// Reports cells whose active tetrahedra have changed.
@@ -42,7 +42,7 @@ public:
 
   /// Updates the states of a chunk. p: parameters of the chunk. Call Finish() after all chunks.
   void Update(OpenCLContext& context, const cl::CommandQueue& queue, const KernelParameters& p,
-    VolumeChunk& chunk, const Source& source);
+    VolumeChunk& chunk, const Inputs& inputs);
   void Finish();
 
   /// Releases the states. Kernels must then be launched with HasState = 0.

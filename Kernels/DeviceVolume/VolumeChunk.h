@@ -27,8 +27,8 @@ struct VolumeChunk
   cl::Buffer Blanked;
   cl::Buffer Active;
   cl::Buffer Distances;           // boundary distances, a float per voxel
-  cl::Buffer Boundary;            // a byte per cell (BridgeMask.cl); may be null
-  cl::Buffer ResampledTetrahedra; // a byte per cell, see BridgeMask; may be null
+  cl::Buffer Boundary;            // a byte per cell (ResampledMask.cl); may be null
+  cl::Buffer ResampledTetrahedra; // a byte per cell, see ResampledMask; may be null
   std::vector<cl::Buffer> Arrays; // see DeviceArrays::GetBuffers()
 };
 

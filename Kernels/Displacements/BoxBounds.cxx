@@ -41,8 +41,8 @@ std::vector<DisplacementBounds> FindBoxBounds(WorkDevice& device, const cl::Buff
   std::vector<DisplacementBounds> made(boxes.size());
   for (std::size_t box = 0; box < boxes.size(); ++box)
   {
-    std::copy_n(found[box].begin(), 3, made[box].Least.begin());
-    std::copy_n(found[box].begin() + 3, 3, made[box].Greatest.begin());
+    std::copy_n(found[box].begin(), 3, made[box].Min.begin());
+    std::copy_n(found[box].begin() + 3, 3, made[box].Max.begin());
   }
   return made;
 }

@@ -129,8 +129,8 @@ void PadSome(const float* vectors, std::size_t begin, std::size_t end, float* pa
     std::copy(next.begin(), next.end(), padded + 4 * i);
     for (std::size_t c = 0; c < next.size(); ++c)
     {
-      all.Least[c] = std::min(all.Least[c], next[c]);
-      all.Greatest[c] = std::max(all.Greatest[c], next[c]);
+      all.Min[c] = std::min(all.Min[c], next[c]);
+      all.Max[c] = std::max(all.Max[c], next[c]);
     }
   }
   bounds = all;
@@ -188,7 +188,7 @@ void DisplacementBuffer::Clear()
   std::vector<float>().swap(this->Copy);
 }
 
-void DisplacementBuffer::Visit(const std::function<void(const float*)>& visit) const
+void DisplacementBuffer::WithDisplacements(const std::function<void(const float*)>& visit) const
 {
   if (!this->Device.GetDevice().IsProcessor && !this->Copy.empty())
   {
@@ -200,21 +200,21 @@ void DisplacementBuffer::Visit(const std::function<void(const float*)>& visit) c
   visit(mapped.Get());
 }
 
-const cl::Buffer& DisplacementBuffer::ReserveFor(std::size_t count)
+const cl::Buffer& DisplacementBuffer::AllocateForKernel(std::size_t count)
 {
   const bool isWritable =
     this->Buffer() && this->Buffer.getInfo<CL_MEM_FLAGS>() & CL_MEM_READ_WRITE;
   if (!isWritable || this->GetNumberOfPoints() < count)
   {
     this->Clear();
-    deformvolume::Reserve(this->Device.GetContext(), this->Buffer, 4 * count * sizeof(float));
+    deformvolume::Grow(this->Device.GetContext(), this->Buffer, 4 * count * sizeof(float));
   }
   std::vector<float>().swap(this->Copy);
   this->Observer.MoveAll({});
   return this->Buffer;
 }
 
-void DisplacementBuffer::Reserve(std::size_t count)
+void DisplacementBuffer::Grow(std::size_t count)
 {
   constexpr std::size_t bytes = 4 * sizeof(float);
   const std::size_t had = this->GetNumberOfPoints();
@@ -238,7 +238,7 @@ void DisplacementBuffer::Reserve(std::size_t count)
   }
 }
 
-void DisplacementBuffer::Send(const float* displacements, std::size_t count, std::size_t room,
+void DisplacementBuffer::Set(const float* displacements, std::size_t count, std::size_t room,
   const PointRanges* changes, const std::function<BrickPoints()>& makePoints)
 {
   const std::size_t held = this->GetNumberOfPoints();
@@ -255,15 +255,15 @@ void DisplacementBuffer::Send(const float* displacements, std::size_t count, std
     this->Observer.MoveAll({});
     changes = nullptr;
   }
-  const News news{ displacements, count, changes, makePoints };
+  const SetArguments arguments{ displacements, count, changes, makePoints };
   const cl::CommandQueue& queue = this->Device.GetQueue();
   if (isProcessor)
   {
     const MappedBuffer<float> sent(queue, this->Buffer, CL_MAP_READ | CL_MAP_WRITE);
-    this->Write(news, sent.Get());
+    this->Write(arguments, sent.Get());
     return;
   }
-  const std::array<std::size_t, 2> changed = this->Write(news, this->Copy.data());
+  const std::array<std::size_t, 2> changed = this->Write(arguments, this->Copy.data());
   if (changed[0] < changed[1])
   {
     constexpr std::size_t bytes = 4 * sizeof(float);
@@ -272,14 +272,14 @@ void DisplacementBuffer::Send(const float* displacements, std::size_t count, std
   }
 }
 
-std::array<std::size_t, 2> DisplacementBuffer::Write(const News& news, float* sent)
+std::array<std::size_t, 2> DisplacementBuffer::Write(const SetArguments& arguments, float* sent)
 {
-  const auto& [displacements, count, changes, makePoints] = news;
+  const auto& [displacements, count, changes, makePoints] = arguments;
   const std::vector<std::size_t> words = FindWords(changes, count);
   bool partly = this->Observer.IsTracking();
   if (partly)
   {
-    const std::size_t most = this->Observer.GetMostMoved(count);
+    const std::size_t most = this->Observer.GetMaxMoved(count);
     this->Changed.Clear(count);
     const std::size_t number = MarkChanges(displacements, sent, words, count, most, this->Changed);
     if (number == 0)

@@ -41,26 +41,26 @@ public:
   /// number of points of the buffer, for meshes that had more nodes before. changes: points that
   /// may have changed since the last call; null: all. makePoints: returns the argument of
   /// DisplacementObserver::SetPoints().
-  void Send(const float* displacements, std::size_t count, std::size_t room,
+  void Set(const float* displacements, std::size_t count, std::size_t room,
     const PointRanges* changes, const std::function<BrickPoints()>& makePoints);
 
   /// Enlarges the buffer to at least `count` points. The displacements of new points are 0.
-  void Reserve(std::size_t count);
+  void Grow(std::size_t count);
 
   /// Returns a buffer for `count` points, to be written by a kernel. The previous displacements may
   /// be lost. All points count as changed.
-  const cl::Buffer& ReserveFor(std::size_t count);
+  const cl::Buffer& AllocateForKernel(std::size_t count);
 
   const cl::Buffer& Get() const { return this->Buffer; }
   /// Calls visit(displacements) with the displacements on the device, four floats per point.
-  void Visit(const std::function<void(const float*)>& visit) const;
+  void WithDisplacements(const std::function<void(const float*)>& visit) const;
   /// Number of points for which the buffer has room.
   std::size_t GetNumberOfPoints() const;
   void Clear();
 
 private:
-  /// The arguments of Send().
-  struct News
+  /// The arguments of Set().
+  struct SetArguments
   {
     const float* Vectors;
     std::size_t Count;
@@ -69,7 +69,7 @@ private:
   };
   /// Writes the displacements to `sent` (the mapped buffer, or Copy), and notifies the observer.
   /// Returns a range that contains all changed points.
-  std::array<std::size_t, 2> Write(const News& news, float* sent);
+  std::array<std::size_t, 2> Write(const SetArguments& arguments, float* sent);
 
   WorkDevice& Device;
   DisplacementObserver& Observer;

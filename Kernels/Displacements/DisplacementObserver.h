@@ -26,21 +26,21 @@ public:
   virtual bool IsTracking() const = 0;
   /// Returns the largest number of changed points, of numberOfPoints, that are worth tracking. If
   /// more points change, call MoveAll().
-  virtual std::size_t GetMostMoved(std::size_t numberOfPoints) const = 0;
+  virtual std::size_t GetMaxMoved(std::size_t numberOfPoints) const = 0;
 
   /// Whether the observer knows which points move each sub-brick, as MovePoints() needs. False at
-  /// first and after ForgetMapping().
+  /// first and after InvalidateMapping().
   virtual bool HasPoints() const = 0;
   /// Set the points that move each sub-brick.
   virtual void SetPoints(BrickPoints&& points) = 0;
   /// The mapping from points to vertices has changed.
-  virtual void ForgetMapping() = 0;
+  virtual void InvalidateMapping() = 0;
 
   /// Whether the observer knows the boxes of all sub-bricks. If so, MovePoints() may be called
   /// after the change.
-  virtual bool KnowsAllBoxes() const = 0;
+  virtual bool HasAllBoxes() const = 0;
   /// Points will change. last: displacements before the change, four floats per point; null: the
-  /// points have already changed (KnowsAllBoxes()).
+  /// points have already changed (HasAllBoxes()).
   virtual void MovePoints(const PointSet& changed, const float* last) = 0;
   /// The nodes of tetrahedra will change. last: as in MovePoints(). Returns boxes that contain all
   /// vertices in these tetrahedra; empty if they are not known.

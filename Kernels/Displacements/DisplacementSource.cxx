@@ -102,15 +102,15 @@ void DisplacementSource::SendTetrahedra(
   this->Tetrahedra =
     this->Device.Send(offsets.data(), numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
   this->NumberOfNodes = numberOfNodes;
-  this->MostNodes = numberOfNodes;
+  this->MaxNumberOfNodes = numberOfNodes;
   if (this->Nodes.GetNumberOfPoints() != numberOfNodes)
   {
     this->Nodes.Clear();
   }
   this->NodesSet = false;
-  this->LastSent = false;
+  this->DeviceIsCurrent = false;
   this->ForgetField();
-  this->Observer.ForgetMapping();
+  this->Observer.InvalidateMapping();
 }
 
 bool DisplacementSource::HasMesh() const
@@ -129,14 +129,14 @@ void DisplacementSource::SetCoincidentNodes(const std::int32_t* numbers)
   {
     // Removed nodes have no common position with other nodes.
     all.assign(numbers, numbers + this->NumberOfNodes);
-    all.resize(this->MostNodes, -1);
+    all.resize(this->MaxNumberOfNodes, -1);
   }
   this->Volume.GetMasks().SetCoincidentNodes(all);
 }
 
-std::vector<Extent> DisplacementSource::UpdateBridges()
+std::vector<Extent> DisplacementSource::UpdateResampledMask()
 {
-  return this->Volume.UpdateBridges(this->GetMappingForm(), this->Tetrahedra,
+  return this->Volume.UpdateResampledMask(this->GetMappingKind(), this->Tetrahedra,
     [this](cl::Kernel& kernel, const VolumeChunk& chunk)
     { return this->SetMappingArguments(kernel, chunk); });
 }
@@ -160,52 +160,52 @@ void DisplacementSource::SetNodeDisplacements(
     this->SendNodes(this->Reading.GetDisplacements(changes), changes ? &*changes : nullptr, false);
     return;
   }
-  if (this->NodesSet && this->LastSent && changes && changes->empty())
+  if (this->NodesSet && this->DeviceIsCurrent && changes && changes->empty())
   {
     return;
   }
   this->NodesSet = false;
-  this->Reading.Convert(this->Nodes.ReserveFor(this->MostNodes), "node");
+  this->Reading.Convert(this->Nodes.AllocateForKernel(this->MaxNumberOfNodes), "node");
   this->NodesSet = true;
-  this->LastSent = true;
-  this->Volume.GetRecords().Forget();
+  this->DeviceIsCurrent = true;
+  this->Volume.GetRecords().Invalidate();
 }
 
 void DisplacementSource::SendNodes(
   const float* displacements, const PointRanges* changes, bool areChecked)
 {
-  const PointRanges* news = this->NodesSet && this->LastSent ? changes : nullptr;
-  this->LastSent = false;
+  const PointRanges* validChanges = this->NodesSet && this->DeviceIsCurrent ? changes : nullptr;
+  this->DeviceIsCurrent = false;
   if (!areChecked)
   {
-    CheckDisplacements(displacements, this->NumberOfNodes, "node", news);
+    CheckDisplacements(displacements, this->NumberOfNodes, "node", validChanges);
   }
-  this->Nodes.Send(displacements, this->NumberOfNodes, this->MostNodes, news,
+  this->Nodes.Set(displacements, this->NumberOfNodes, this->MaxNumberOfNodes, validChanges,
     [this] { return this->MakeBrickPoints(); });
   this->NodesSet = true;
-  this->LastSent = true;
-  this->Volume.GetRecords().Forget();
+  this->DeviceIsCurrent = true;
+  this->Volume.GetRecords().Invalidate();
 }
 
 void DisplacementSource::SetField(const DisplacementField& field, const PointRanges* changes)
 {
-  if (static_cast<std::size_t>(GetNumberOfPoints(field)) < VectorReading::LeastPoints ||
+  if (static_cast<std::size_t>(GetNumberOfPoints(field)) < VectorConverter::MinPoints ||
     !this->Reading.CanConvert(field))
   {
     this->Reading.Forget();
-    this->UseField(field, changes);
+    this->SetFieldOnHost(field, changes);
     return;
   }
-  const PointRanges* news = this->LastSent ? changes : nullptr;
-  this->ConvertField(field, news,
+  const PointRanges* validChanges = this->DeviceIsCurrent ? changes : nullptr;
+  this->ConvertFieldOnDevice(field, validChanges,
     [&](const cl::Buffer& displacements, bool partly)
     {
       const std::array<std::size_t, 2> range = partly
-        ? GetHull(*news, this->NumberOfNodes)
+        ? GetHull(*validChanges, this->NumberOfNodes)
         : std::array<std::size_t, 2>{ { 0, this->NumberOfNodes } };
       this->Reading.Convert(field, range, displacements, "point");
     });
-  this->LastSent = true;
+  this->DeviceIsCurrent = true;
 }
 
 void DisplacementSource::SetField(
@@ -219,18 +219,18 @@ void DisplacementSource::SetField(
     DisplacementField read = field;
     read.Vectors = vectors->Read();
     read.Owner = vectors;
-    this->UseField(read, changes ? &*changes : nullptr);
+    this->SetFieldOnHost(read, changes ? &*changes : nullptr);
     return;
   }
-  this->ConvertField(field, changes ? &*changes : nullptr,
+  this->ConvertFieldOnDevice(field, changes ? &*changes : nullptr,
     [this](const cl::Buffer& displacements, bool)
     { this->Reading.Convert(displacements, "point"); });
 }
 
-void DisplacementSource::ConvertField(const DisplacementField& field, const PointRanges* changes,
-  const std::function<void(const cl::Buffer&, bool)>& convert)
+void DisplacementSource::ConvertFieldOnDevice(const DisplacementField& field,
+  const PointRanges* changes, const std::function<void(const cl::Buffer&, bool)>& convert)
 {
-  const FieldParameters parameters = this->BeginField(field);
+  const FieldParameters parameters = this->PrepareForField(field);
   this->CheckFieldSize();
   const bool hasRoom = this->FieldVectors.GetNumberOfPoints() == this->NumberOfNodes;
   const bool isSame = this->IsConverted && hasRoom && IsSameMapping(parameters, this->Field) &&
@@ -240,14 +240,14 @@ void DisplacementSource::ConvertField(const DisplacementField& field, const Poin
     this->ForgetField();
   }
   this->Field = parameters;
-  this->LastSent = false;
+  this->DeviceIsCurrent = false;
   this->WrittenInPart = isSame && changes;
   this->BoundsOfSubBricks.clear();
   try
   {
     if (!this->WrittenInPart)
     {
-      convert(this->FieldVectors.ReserveFor(this->NumberOfNodes), false);
+      convert(this->FieldVectors.AllocateForKernel(this->NumberOfNodes), false);
       this->IsConverted = true;
       return;
     }
@@ -277,7 +277,7 @@ const std::vector<DisplacementBounds>& DisplacementSource::FindBoundsOfSubBricks
   return this->BoundsOfSubBricks;
 }
 
-FieldParameters DisplacementSource::BeginField(const DisplacementField& field)
+FieldParameters DisplacementSource::PrepareForField(const DisplacementField& field)
 {
   const FieldParameters parameters = MakeFieldParameters(field, this->Volume.GetVoxelGrid());
   if (this->Volume.HasMesh())
@@ -288,16 +288,16 @@ FieldParameters DisplacementSource::BeginField(const DisplacementField& field)
   this->NumberOfNodes = static_cast<std::size_t>(GetNumberOfPoints(field));
   if (!this->HasField() || !IsSameMapping(parameters, this->Field))
   {
-    this->Observer.ForgetMapping();
-    this->Volume.ForgetState();
+    this->Observer.InvalidateMapping();
+    this->Volume.InvalidateState();
   }
   return parameters;
 }
 
-void DisplacementSource::UseField(const DisplacementField& field, const PointRanges* changes)
+void DisplacementSource::SetFieldOnHost(const DisplacementField& field, const PointRanges* changes)
 {
   this->IsConverted = false;
-  const FieldParameters parameters = this->BeginField(field);
+  const FieldParameters parameters = this->PrepareForField(field);
   if (this->CanReadInPlace(field, parameters))
   {
     const DisplacementField& last = this->FieldInPlace;
@@ -305,7 +305,7 @@ void DisplacementSource::UseField(const DisplacementField& field, const PointRan
       last.ToDisplacement == field.ToDisplacement && IsSameMapping(parameters, this->Field);
     this->Field = parameters;
     this->WrittenInPart = isSame && changes;
-    if (!this->WrittenInPart || !this->ChangeInPlace(field, *changes))
+    if (!this->WrittenInPart || !this->UpdateFieldInPlace(field, *changes))
     {
       this->SetFieldInPlace(field);
     }
@@ -315,7 +315,7 @@ void DisplacementSource::UseField(const DisplacementField& field, const PointRan
   {
     this->ForgetField();
   }
-  this->SendField(field, parameters, changes);
+  this->UploadField(field, parameters, changes);
 }
 
 void DisplacementSource::CheckFieldSize() const
@@ -324,28 +324,29 @@ void DisplacementSource::CheckFieldSize() const
     "The vectors of the displacement field", "Use a coarser field");
 }
 
-void DisplacementSource::SendField(
+void DisplacementSource::UploadField(
   const DisplacementField& field, const FieldParameters& parameters, const PointRanges* changes)
 {
   const std::size_t points = this->NumberOfNodes;
-  const PointRanges* news = this->LastSent && this->FieldVectors.GetNumberOfPoints() == points &&
+  const PointRanges* validChanges = this->DeviceIsCurrent &&
+      this->FieldVectors.GetNumberOfPoints() == points &&
       HasSameDimensions(parameters, this->Field) && HasSameMatrix(parameters, this->Field)
     ? changes
     : nullptr;
-  this->LastSent = false;
+  this->DeviceIsCurrent = false;
   const std::vector<float> displacements =
     parameters.IsMapped ? MapVectors(field) : std::vector<float>();
   const float* vectors = parameters.IsMapped ? displacements.data() : field.Vectors;
-  CheckDisplacements(vectors, points, "point", news);
+  CheckDisplacements(vectors, points, "point", validChanges);
   this->CheckFieldSize();
   if (this->FieldVectors.GetNumberOfPoints() != points)
   {
     this->FieldVectors.Clear();
   }
   this->Field = parameters;
-  this->FieldVectors.Send(
-    vectors, points, points, news, [this] { return this->MakeBrickPoints(); });
-  this->LastSent = true;
+  this->FieldVectors.Set(
+    vectors, points, points, validChanges, [this] { return this->MakeBrickPoints(); });
+  this->DeviceIsCurrent = true;
 }
 
 bool DisplacementSource::CanReadInPlace(
@@ -366,7 +367,8 @@ bool DisplacementSource::CanReadInPlace(
     (array.IsOver(field.Vectors, GetBytes(field)) && this->Volume.GetChunks().size() == 1);
 }
 
-bool DisplacementSource::ChangeInPlace(const DisplacementField& field, const PointRanges& changes)
+bool DisplacementSource::UpdateFieldInPlace(
+  const DisplacementField& field, const PointRanges& changes)
 {
   const auto after = [&]
   {
@@ -397,12 +399,12 @@ bool DisplacementSource::NotifyOfChanges(
   {
     count += std::min(range[1], this->NumberOfNodes) - std::min(range[0], this->NumberOfNodes);
   }
-  if (count > this->Observer.GetMostMoved(this->NumberOfNodes))
+  if (count > this->Observer.GetMaxMoved(this->NumberOfNodes))
   {
     this->WrittenInPart = false;
     return false;
   }
-  if (!this->Observer.IsTracking() || !this->Observer.KnowsAllBoxes())
+  if (!this->Observer.IsTracking() || !this->Observer.HasAllBoxes())
   {
     return false;
   }
@@ -423,7 +425,7 @@ bool DisplacementSource::NotifyOfChanges(
 void DisplacementSource::SetFieldInPlace(const DisplacementField& field)
 {
   this->Observer.MoveAll({});
-  this->LastSent = false;
+  this->DeviceIsCurrent = false;
   this->FieldVectors.Clear();
   const BufferInPlace array =
     this->Volume.GetArrays().FindOverlapping(field.Vectors, GetBytes(field));
@@ -455,7 +457,7 @@ void DisplacementSource::ForgetNodes()
   this->Nodes.Clear();
   this->NumberOfTetrahedra = 0;
   this->NumberOfNodes = 0;
-  this->MostNodes = 0;
+  this->MaxNumberOfNodes = 0;
   this->NodesSet = false;
 }
 
@@ -474,7 +476,7 @@ void DisplacementSource::Forget()
   this->ForgetNodes();
   this->ForgetField();
   this->Reading.Forget();
-  this->Observer.ForgetMapping();
+  this->Observer.InvalidateMapping();
 }
 
 const cl::Buffer& DisplacementSource::GetFieldVectors() const
@@ -487,23 +489,23 @@ bool DisplacementSource::IsReady() const
   return (this->Volume.HasMesh() && this->NodesSet) || this->HasField();
 }
 
-MappingForm DisplacementSource::GetMappingForm() const
+MappingKind DisplacementSource::GetMappingKind() const
 {
-  return this->Volume.HasRuns() ? MappingForm::Runs
-    : this->Volume.HasMesh()    ? MappingForm::Links
-    : this->FieldInPlace.Owner  ? MappingForm::FieldInPlace
-                                : MappingForm::Field;
+  return this->Volume.HasRuns() ? MappingKind::Runs
+    : this->Volume.HasMesh()    ? MappingKind::Links
+    : this->FieldInPlace.Owner  ? MappingKind::FieldInPlace
+                                : MappingKind::Field;
 }
 
 cl_uint DisplacementSource::SetMappingArguments(cl::Kernel& kernel, const VolumeChunk& chunk) const
 {
   const cl::Buffer& rest = this->Volume.GetRestPositions();
-  switch (this->GetMappingForm())
+  switch (this->GetMappingKind())
   {
-    case MappingForm::Runs:
+    case MappingKind::Runs:
       return SetArguments(
         kernel, 0, chunk.Runs, chunk.RowRanges, this->Volume.GetRecords().Get(), rest);
-    case MappingForm::Links:
+    case MappingKind::Links:
       return SetArguments(kernel, 0, chunk.Links, this->Tetrahedra, this->Nodes.Get(), rest);
     default:
       return SetArguments(kernel, 0, this->GetFieldVectors(), this->Field, rest);
@@ -525,7 +527,7 @@ cl_uint DisplacementSource::SetPointArguments(
 
 cl::Event DisplacementSource::PrepareMapping(const std::vector<cl_uint>* bricks)
 {
-  const cl::Program mapping = GetMappingProgram(this->Device.GetContext(), this->GetMappingForm(),
+  const cl::Program mapping = GetMappingProgram(this->Device.GetContext(), this->GetMappingKind(),
     this->Volume.GetMasks().HasCut(), this->Volume.HasTurnedAxes());
   TetrahedronRecords& records = this->Volume.GetRecords();
   cl::Event launched;
@@ -542,14 +544,15 @@ cl::Event DisplacementSource::PrepareMapping(const std::vector<cl_uint>* bricks)
 
 BrickPoints DisplacementSource::MakeBrickPoints() const
 {
-  return this->Volume.HasMesh() ? this->Volume.MakeBrickPoints(this->Tetrahedra, this->MostNodes)
-                                : this->Volume.MakeBrickPoints(this->Field);
+  return this->Volume.HasMesh()
+    ? this->Volume.MakeBrickPoints(this->Tetrahedra, this->MaxNumberOfNodes)
+    : this->Volume.MakeBrickPoints(this->Field);
 }
 
-void DisplacementSource::Visit(
+void DisplacementSource::WithDisplacements(
   const std::function<void(const Displacements&, std::size_t)>& visit) const
 {
-  if (this->GetMappingForm() == MappingForm::FieldInPlace)
+  if (this->GetMappingKind() == MappingKind::FieldInPlace)
   {
     visit({ nullptr, &this->FieldInPlace, nullptr },
       static_cast<std::size_t>(GetNumberOfPoints(this->FieldInPlace)));
@@ -561,7 +564,7 @@ void DisplacementSource::Visit(
     return;
   }
   const DisplacementBuffer& buffer = this->Volume.HasMesh() ? this->Nodes : this->FieldVectors;
-  buffer.Visit(
+  buffer.WithDisplacements(
     [&](const float* vectors) {
       visit({ vectors, nullptr, nullptr }, buffer.GetNumberOfPoints());
     });

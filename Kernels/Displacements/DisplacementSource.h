@@ -9,7 +9,7 @@
 #include "MappingProgram.h"
 #include "MeshBoundary.h"
 #include "Tetrahedron.h"
-#include "VectorReading.h"
+#include "VectorConverter.h"
 #include "VertexLink.h"
 #include "VertexRuns.h"
 
@@ -84,13 +84,13 @@ public:
   /// Updates the mask of bridges: tetrahedra of the sampling mesh over a split of the mesh, which
   /// are not resampled (SetCoincidentNodes()). Returns the boxes of cells whose bridges have
   /// changed.
-  std::vector<Extent> UpdateBridges();
+  std::vector<Extent> UpdateResampledMask();
   /// Updates the data that depend on displacements and masks: the records of runs and the state of
   /// the vertices. bricks: bricks to resample, if the other bricks do not change
   /// (DEFORMVOLUME_BRICK_BITS); null: all. Returns the launch that updates the records of runs;
   /// null if they are current.
   cl::Event PrepareMapping(const std::vector<cl_uint>* bricks = nullptr);
-  MappingForm GetMappingForm() const;
+  MappingKind GetMappingKind() const;
   /// Sets the arguments of the mapping, which are the first arguments of a kernel. Returns their
   /// number.
   cl_uint SetMappingArguments(cl::Kernel& kernel, const VolumeChunk& chunk) const;
@@ -106,7 +106,7 @@ public:
   void ChangeHalo() { this->BoundsOfSubBricks.clear(); }
   /// Calls visit(displacements, numberOfPoints) with the current displacements, or with their
   /// bounds if they are only on the device.
-  void Visit(const std::function<void(const Displacements&, std::size_t)>& visit) const;
+  void WithDisplacements(const std::function<void(const Displacements&, std::size_t)>& visit) const;
 
   /// Whether the last call of SetField() changed only some points, for a field that is read in
   /// place or that a kernel has converted.
@@ -138,25 +138,25 @@ private:
   const cl::Buffer& GetFieldVectors() const;
   /// Removes a mesh, if one is set, and prepares for a field. Returns the parameters of the field
   /// for kernels.
-  FieldParameters BeginField(const DisplacementField& field);
-  void UseField(const DisplacementField& field, const PointRanges* changes);
+  FieldParameters PrepareForField(const DisplacementField& field);
+  void SetFieldOnHost(const DisplacementField& field, const PointRanges* changes);
   bool CanReadInPlace(const DisplacementField& field, const FieldParameters& parameters) const;
   /// Changes some points of the field that is read in place. Returns false if all points must count
   /// as changed.
-  bool ChangeInPlace(const DisplacementField& field, const PointRanges& changes);
+  bool UpdateFieldInPlace(const DisplacementField& field, const PointRanges& changes);
   void SetFieldInPlace(const DisplacementField& field);
   void CheckFieldSize() const;
   /// Sets a field whose displacements are written by a kernel. changes: points that may have
   /// changed; null: all. convert(displacements, partly): writes the displacements to the buffer;
   /// partly: at least those of `changes`.
-  void ConvertField(const DisplacementField& field, const PointRanges* changes,
+  void ConvertFieldOnDevice(const DisplacementField& field, const PointRanges* changes,
     const std::function<void(const cl::Buffer&, bool)>& convert);
   const std::vector<DisplacementBounds>& FindBoundsOfSubBricks() const;
   /// Notifies the observer of changed points. after: computes the bounds of their new
   /// displacements. Returns false if all points must count as changed.
   bool NotifyOfChanges(
     const PointRanges& changes, const std::function<DisplacementBounds()>& after);
-  void SendField(
+  void UploadField(
     const DisplacementField& field, const FieldParameters& parameters, const PointRanges* changes);
 
   WorkDevice& Device;
@@ -166,7 +166,8 @@ private:
   cl::Buffer Tetrahedra; // nodes of the tetrahedra, times DEFORMVOLUME_NODE_STRIDE
   std::size_t NumberOfTetrahedra = 0;
   std::size_t NumberOfNodes = 0;
-  std::size_t MostNodes = 0; // largest number of nodes since SetMesh(), and size of the buffers
+  std::size_t MaxNumberOfNodes =
+    0; // largest number of nodes since SetMesh(), and size of the buffers
   DisplacementBuffer Nodes;
   bool NodesSet = false;
 
@@ -176,10 +177,10 @@ private:
   DisplacementField FieldInPlace; // has an owner if the kernels read its vectors in place
   cl::Buffer VectorsInPlace;      // uses the memory of these vectors
 
-  VectorReading Reading;
+  VectorConverter Reading;
   bool IsConverted = false; // whether a kernel has written the displacements of the field
   mutable std::vector<DisplacementBounds> BoundsOfSubBricks; // if converted; empty: not known
-  bool LastSent = false; // whether the device has the displacements of the last call
+  bool DeviceIsCurrent = false; // whether the device has the displacements of the last call
 };
 
 } // namespace deformvolume

@@ -53,11 +53,11 @@ void DisplacementSource::CheckChanges(
       throw Error("The nodes of " + name + " cannot be changed: the mesh has only " +
         std::to_string(this->NumberOfTetrahedra) + " tetrahedra.");
     }
-    if (!areNodes(change.After, numberOfNodes) || !areNodes(change.Before, this->MostNodes))
+    if (!areNodes(change.After, numberOfNodes) || !areNodes(change.Before, this->MaxNumberOfNodes))
     {
       throw Error("The change of the nodes of " + name +
         " refers to a node that does not exist: the mesh has " + std::to_string(numberOfNodes) +
-        " nodes, and had at most " + std::to_string(this->MostNodes) + " before.");
+        " nodes, and had at most " + std::to_string(this->MaxNumberOfNodes) + " before.");
     }
   }
 }
@@ -109,25 +109,25 @@ void DisplacementSource::ChangeConnectivity(const Tetrahedron* tetrahedra,
   std::optional<std::vector<Extent>> boxes;
   if (this->Observer.HasPoints())
   {
-    this->Nodes.Visit(
+    this->Nodes.WithDisplacements(
       [&](const float* last) { boxes = this->Observer.ChangeTetrahedra(*changes, last); });
   }
   this->SendChanges(*changes);
   if (boxes)
   {
-    this->Volume.GetMasks().GetBridges().ChangeVertices(*boxes);
+    this->Volume.GetMasks().GetResampledMask().ChangeVertices(*boxes);
   }
   else
   {
-    this->Volume.GetMasks().GetBridges().Forget();
+    this->Volume.GetMasks().GetResampledMask().Invalidate();
   }
-  this->Volume.GetRecords().Forget();
+  this->Volume.GetRecords().Invalidate();
 }
 
 void DisplacementSource::SetNumberOfNodes(std::size_t numberOfNodes)
 {
-  this->MostNodes = std::max(this->MostNodes, numberOfNodes);
-  this->Nodes.Reserve(numberOfNodes);
+  this->MaxNumberOfNodes = std::max(this->MaxNumberOfNodes, numberOfNodes);
+  this->Nodes.Grow(numberOfNodes);
   if (this->Observer.IsTracking())
   {
     if (!this->Observer.HasPoints())
@@ -137,7 +137,7 @@ void DisplacementSource::SetNumberOfNodes(std::size_t numberOfNodes)
     // Add the bounds of new nodes here. If the displacement of a new node equals the value in the
     // buffer, the node does not count as changed later.
     DisplacementBounds bounds;
-    this->Nodes.Visit(
+    this->Nodes.WithDisplacements(
       [&](const float* last)
       {
         if (this->NumberOfNodes < numberOfNodes)

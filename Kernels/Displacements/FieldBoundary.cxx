@@ -114,18 +114,19 @@ public:
   template <typename Add>
   void AddPieces(std::int64_t number, const Add& add) const
   {
-    static constexpr int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
     const glm::i64vec3 cell(number % this->Cells.x, number / this->Cells.x % this->Cells.y,
       number / this->Cells.x / this->Cells.y);
     std::array<glm::dvec3, 8> points;
     for (int vertex = 0; vertex < 8; ++vertex)
     {
       const auto offset = vertex ^ DEFORMVOLUME_MIRROR(cell.x, cell.y, cell.z);
-      const glm::i64vec3 corner = cell + glm::i64vec3(offset & 1, offset >> 2 & 1, offset >> 1 & 1);
+      const glm::i64vec3 corner = cell +
+        glm::i64vec3(DEFORMVOLUME_OFFSET_X(offset), DEFORMVOLUME_OFFSET_Y(offset),
+          DEFORMVOLUME_OFFSET_Z(offset));
       points[static_cast<std::size_t>(vertex)] =
         glm::min(glm::dvec3(corner) * this->Step, this->Grid.Last);
     }
-    for (const auto& tetrahedron : split)
+    for (const auto& tetrahedron : FiveTetrahedra)
     {
       MeshBoundary::Piece piece;
       piece.Tetrahedron = 0;

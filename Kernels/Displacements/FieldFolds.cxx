@@ -22,7 +22,8 @@ namespace deformvolume
 namespace
 {
 
-// Less than 1 by far more than rounding errors of floats.
+// 1 minus a margin for rounding: a cell is regular without further tests only if its sum is clearly
+// below 1.
 constexpr float LargestChange = 0.999F;
 
 // Loops with std::min() and std::max(), which return references, are not vectorized.
@@ -167,14 +168,14 @@ bool RowCounter::IsRegular(std::size_t x) const
 
 int RowCounter::CountInCell(int x, int y, int z) const
 {
-  static constexpr int tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
   const glm::ivec3 cell(x, y, z);
   glm::dvec3 moved[8]; // in continuous indices of the field
   for (int vertex = 0; vertex < 8; ++vertex)
   {
     // The split is mirrored from cell to cell, so the bits of a vertex are the parities of its
     // point.
-    const glm::ivec3 parity(vertex & 1, vertex >> 2 & 1, vertex >> 1 & 1);
+    const glm::ivec3 parity(
+      DEFORMVOLUME_OFFSET_X(vertex), DEFORMVOLUME_OFFSET_Y(vertex), DEFORMVOLUME_OFFSET_Z(vertex));
     const glm::ivec3 point = cell + (parity ^ (cell & 1));
     const float* const row = this->Rows[parity.y][parity.z];
     moved[vertex] = glm::dvec3(point) + this->ToField * GetVector(row, point.x);
@@ -183,9 +184,9 @@ int RowCounter::CountInCell(int x, int y, int z) const
   int inverted = 0;
   for (int t = 0; t < 5; ++t)
   {
-    const glm::dvec3& a = moved[tetrahedra[t][0]];
-    const double volume = glm::dot(moved[tetrahedra[t][1]] - a,
-      glm::cross(moved[tetrahedra[t][2]] - a, moved[tetrahedra[t][3]] - a));
+    const glm::dvec3& a = moved[FiveTetrahedra[t][0]];
+    const double volume = glm::dot(moved[FiveTetrahedra[t][1]] - a,
+      glm::cross(moved[FiveTetrahedra[t][2]] - a, moved[FiveTetrahedra[t][3]] - a));
     inverted += (isOdd != (t == 4) ? -volume : volume) < 0.0 ? 1 : 0;
   }
   return inverted;

@@ -36,15 +36,14 @@ void SetSameGrid(FieldParameters& field, const Extent& extent)
 
 } // namespace
 
-std::size_t CountPoints(const DisplacementField& field)
+void CheckHasPoints(const DisplacementField& field)
 {
-  const auto points = static_cast<std::size_t>(GetNumberOfPoints(field));
+  const std::int64_t points = GetNumberOfPoints(field);
   if (points == 0 || !field.Vectors)
   {
     throw Error("The displacement field is empty: it has " + std::to_string(points) + " points" +
       (field.Vectors ? "." : ", and its vectors are null."));
   }
-  return points;
 }
 
 FieldParameters MakeMatrixParameters(const DisplacementField& field)

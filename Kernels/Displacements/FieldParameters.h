@@ -13,8 +13,8 @@
 namespace deformvolume
 {
 
-/// Returns the number of points of a field. Throws Error if it has none, or no vectors.
-std::size_t CountPoints(const DisplacementField& field);
+/// Throws Error if a field has no points or no vectors.
+void CheckHasPoints(const DisplacementField& field);
 
 /// Makes the kernel parameters of a field that moves the voxels of a grid.
 FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelGrid& voxelGrid);

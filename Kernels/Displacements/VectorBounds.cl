@@ -4,9 +4,10 @@
 
 #define BOUNDS 6 // the least x, y and z, then the greatest
 
+// Combines two values of a row: rows 0 to 2 are minima, rows 3 to 5 are maxima.
+#define JOIN_BOUND(row, a, b) ((row) < 3 ? fmin(a, b) : fmax(a, b))
 // Reduces the bounds of the work-items of a group to six numbers. shared: BOUNDS values per work-item. All work-items
 // of the group must execute this macro.
-#define JOIN_BOUND(row, a, b) ((row) < 3 ? fmin(a, b) : fmax(a, b))
 #define JOIN_BOUNDS(shared, least, greatest, bounds)                                               \
   {                                                                                                \
     for (int axis = 0; axis < 3; ++axis)                                                           \

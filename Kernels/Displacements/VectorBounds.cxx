@@ -2,8 +2,8 @@
 #include "VectorBounds.h"
 
 #include "DeviceVectorsInternals.h"
+#include "FieldChecker.h"
 #include "FieldParameters.h"
-#include "FieldScan.h"
 #include "GuardedCall.h"
 #include "HostMemory.h"
 #include "KernelMaking.h"
@@ -24,7 +24,7 @@ using Bounds = std::array<double, 6>;
 constexpr std::size_t Groups = 256;
 
 // Returns the argument `rest` of the kernel FindBounds, with the arithmetic of the host
-// (FieldScan).
+// (FieldChecker).
 std::vector<double> FindRestPositions(const VoxelGrid& voxelGrid)
 {
   const Extent& extent = voxelGrid.VertexExtent;
@@ -42,7 +42,7 @@ std::vector<double> FindRestPositions(const VoxelGrid& voxelGrid)
   return rest;
 }
 
-std::optional<IndexBounds> Find(
+std::optional<IndexBounds> FindDeformedExtent(
   const VoxelGrid& voxelGrid, const DisplacementField& field, DeviceVectors::Internals& vectors)
 {
   WorkDevice& device = vectors.GetWorkDevice();
@@ -101,7 +101,7 @@ std::optional<IndexBounds> FindDeformedBounds(
   {
     return {};
   }
-  return CallGuarded([&] { return Find(voxelGrid, field, internals); });
+  return CallGuarded([&] { return FindDeformedExtent(voxelGrid, field, internals); });
 }
 
 } // namespace deformvolume

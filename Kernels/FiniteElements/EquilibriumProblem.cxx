@@ -38,18 +38,18 @@ EquilibriumLimits ChooseLimits(const EquilibriumRequest& request)
 
 // Adds the weight of the tetrahedra of held pieces. It is distributed by the shape functions: each
 // corner takes -1/20 of the weight of a straight tetrahedron, and each mid-side node 1/5.
-void AddGravity(const glm::dvec3& gravity, const ElasticBody& body, const BodyPieces& pieces,
+void AddGravity(const glm::dvec3& gravity, const ElasticBody& body, const BodyComponents& pieces,
   const std::vector<bool>& isHeld, const GaussVolumes& volumes, std::vector<glm::dvec3>& loads)
 {
   constexpr std::size_t points = QuadraticTetrahedron::NumberOfGaussPoints;
   std::array<std::array<double, QuadraticTetrahedron::NumberOfNodes>, points> shares;
   for (std::size_t point = 0; point < points; ++point)
   {
-    shares[point] = QuadraticTetrahedron::GetShares(point);
+    shares[point] = QuadraticTetrahedron::GetShapeFunctions(point);
   }
   for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
   {
-    if (!isHeld[static_cast<std::size_t>(pieces.PieceOfTetrahedron[t])])
+    if (!isHeld[static_cast<std::size_t>(pieces.ComponentOfTetrahedron[t])])
     {
       continue; // pieces that are not held bear no load, not even at shared nodes
     }
@@ -78,25 +78,25 @@ double LargestComponent(const glm::dvec3& vector)
 }
 
 EquilibriumProblem MakeProblem(const EquilibriumRequest& request, const ElasticBody& body,
-  const BodyPieces& pieces, const GaussVolumes& volumes, const SlidingNodes& sliding)
+  const BodyComponents& pieces, const GaussVolumes& volumes, const SlidingNodes& sliding)
 {
   CheckLoads(body, request.Loads);
   CheckHeldNodes(body, request.Held);
   const std::size_t nodes = body.Points.size();
-  std::vector<unsigned char> isNotFree(body.Fixed);
-  isNotFree.resize(nodes, 0);
+  std::vector<unsigned char> isConstrained(body.Fixed);
+  isConstrained.resize(nodes, 0);
   std::vector<glm::dvec3> targets(request.Loads.FixedDisplacements);
   targets.resize(nodes, glm::dvec3(0.0));
   for (const HeldNode& held : request.Held)
   {
     const auto node = static_cast<std::size_t>(held.Node);
-    isNotFree[node] = 1;
+    isConstrained[node] = 1;
     targets[node] = sliding.Project(node, held.Displacement);
   }
   EquilibriumProblem problem;
   problem.Limits = ChooseLimits(request);
   problem.IsInteractive = request.Mode == EquilibriumMode::Interactive;
-  problem.Supports = FindSupports(body, pieces, isNotFree);
+  problem.Supports = FindSupports(body, pieces, isConstrained);
   const std::vector<bool>& isHeld = problem.Supports.IsHeld;
   if (std::count(isHeld.begin(), isHeld.end(), true) == 0)
   {
@@ -124,7 +124,7 @@ EquilibriumProblem MakeProblem(const EquilibriumRequest& request, const ElasticB
   }
   for (std::size_t node = 0; node < nodes; ++node)
   {
-    if (isNotFree[node] != 0 && pieces.PieceOfNode[node] >= 0)
+    if (isConstrained[node] != 0 && pieces.PieceOfNode[node] >= 0)
     {
       problem.HeldNodes.push_back(static_cast<std::int32_t>(node));
       problem.Targets.push_back(targets[node]);
@@ -133,7 +133,7 @@ EquilibriumProblem MakeProblem(const EquilibriumRequest& request, const ElasticB
     {
       continue;
     }
-    problem.IsFree[node] = isNotFree[node] == 0 ? 1 : 0;
+    problem.IsFree[node] = isConstrained[node] == 0 ? 1 : 0;
     if (!request.Loads.Forces.empty())
     {
       problem.Loads[node] += request.Loads.Forces[node];

@@ -51,7 +51,7 @@ private:
 
 EquilibriumSolver::EquilibriumSolver(AbortCheck& abortCheck, const ElasticBody& body)
   : Body(body)
-  , Pieces(FindPieces(body, &abortCheck))
+  , Pieces(FindBodyComponents(body, &abortCheck))
   , ActivePieces(static_cast<std::size_t>(Pieces.NumberOfPieces), true)
   , Sliding(body)
   , Elements(abortCheck, body)

@@ -81,7 +81,7 @@ private:
     State& state, EquilibriumReport& report);
 
   ElasticBody Body;
-  BodyPieces Pieces;
+  BodyComponents Pieces;
   // The pieces whose tetrahedra Elements contains: those that are held.
   std::vector<bool> ActivePieces;
   SlidingNodes Sliding;

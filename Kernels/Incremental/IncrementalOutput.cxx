@@ -60,7 +60,7 @@ void IncrementalOutput::Start(
   const DeformRequest& request, const DisplacementSource& source, DeformReport& report)
 {
   this->Changes.Start(this->Volume.GetBricks(), this->Volume.GetVoxelGrid(), request.OutputExtent);
-  this->FindCut();
+  this->UpdateCut();
   this->LastMethod = request.Method;
   this->LastInterpolation = request.Interpolation;
   this->LastWholeExtent = request.WholeOutputExtent;
@@ -77,7 +77,7 @@ void IncrementalOutput::Start(
     {
       this->Changes.SetPoints(source.MakeBrickPoints());
     }
-    source.Visit([this](const Displacements& displacements, std::size_t)
+    source.WithDisplacements([this](const Displacements& displacements, std::size_t)
       { this->Changes.FindAllBoxes(displacements); });
     report.ResamplingTime += GetSecondsSince(begin);
   }
@@ -98,7 +98,7 @@ void IncrementalOutput::ChangeCut(const std::vector<Extent>& boxes)
   }
 }
 
-void IncrementalOutput::FindCut()
+void IncrementalOutput::UpdateCut()
 {
   if (!this->CutIsKnown)
   {
@@ -113,7 +113,7 @@ bool IncrementalOutput::IsChangeInside() const
   const Extent moved = this->Changes.GetMovedVertices();
   if (!state() || GetNumberOfPoints(moved) == 0)
   {
-    return this->Changes.IsInside(nullptr, moved);
+    return this->Changes.IsChangeInterior(nullptr, moved);
   }
   // The states are those of the last output: if a mask changed, the change is not inside.
   const std::array<int, 3>& size = this->Volume.GetBricks().Size;
@@ -122,11 +122,11 @@ bool IncrementalOutput::IsChangeInside() const
   if (this->Device.GetDevice().IsProcessor)
   {
     const MappedBuffer<const unsigned char> mapped(queue, state, CL_MAP_READ);
-    return this->Changes.IsInside(mapped.Get(), all);
+    return this->Changes.IsChangeInterior(mapped.Get(), all);
   }
   std::vector<unsigned char> read(static_cast<std::size_t>(GetNumberOfPoints(moved)));
   BeginToReadBox(queue, state, all, moved, 1, read.data(), moved).Check();
-  return this->Changes.IsInside(read.data(), moved);
+  return this->Changes.IsChangeInterior(read.data(), moved);
 }
 
 bool IncrementalOutput::StaysOnDevice(const DeformRequest& request) const
@@ -176,7 +176,7 @@ Extent IncrementalOutput::GetMissing(std::uint64_t held) const
   {
     return this->Changes.GetOutputExtent();
   }
-  Extent missing{ { 0, -1, 0, -1, 0, -1 } };
+  Extent missing = EmptyExtent;
   for (auto change = first; change != this->LastChanges.end(); ++change)
   {
     if (GetNumberOfPoints(change->Changed) > 0)
@@ -210,10 +210,10 @@ bool IncrementalOutput::Update(const DeformRequest& request, const DisplacementS
   }
   catch (...)
   {
-    this->Forget();
+    this->Invalidate();
     throw;
   }
-  this->Forget();
+  this->Invalidate();
   return false;
 }
 
@@ -225,22 +225,23 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   {
     this->Changes.SetPoints(source.MakeBrickPoints());
   }
-  // If cells overlap, the counts of writes do not show which cell owns a voxel.
-  const bool won = resampler.HasWinners();
-  const bool inside = !won && this->IsChangeInside();
-  if (!inside && !this->Changes.HasBoxes())
+  // The shortcut for interior changes compares numbers of writes. It fails if the last output chose
+  // winners of overlaps.
+  const bool hadWinners = resampler.HasWinners();
+  const bool inside = !hadWinners && this->IsChangeInside();
+  if (!inside && !this->Changes.HasPlanBoxes())
   {
-    source.Visit([this](const Displacements& displacements, std::size_t count)
-      { this->Changes.FindBoxes(displacements, count); });
+    source.WithDisplacements([this](const Displacements& displacements, std::size_t count)
+      { this->Changes.FindPlanBoxes(displacements, count); });
   }
-  IncrementalUpdate::Plan plan;
-  if (!this->Changes.MakePlan(inside, plan))
+  ChangeTracker::Plan plan;
+  if (!this->Changes.PlanUpdate(inside, plan))
   {
     return false;
   }
   if (inside && !plan.Bricks.empty())
   {
-    source.Visit([this](const Displacements& displacements, std::size_t)
+    source.WithDisplacements([this](const Displacements& displacements, std::size_t)
       { this->Changes.FindChangedBoxes(displacements); });
   }
   // Also after an exception, nothing may write to the memory of the request any more.
@@ -278,7 +279,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   report.ResamplingTime += GetSecondsSince(read);
   const BoundaryCells& boundary = resampler.GetBoundary();
   const std::uint64_t byCells = covered - boundary.GetNumberOfCovered();
-  if (!won && (counts.NeedWinners(byCells) || (inside && counts.Writes != byCells)))
+  if (!hadWinners && (counts.NeedWinners(byCells) || (inside && counts.Writes != byCells)))
   {
     return false;
   }
@@ -298,7 +299,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
   this->RevisionBefore = std::exchange(this->Revision, MakeRevision());
   report.Revision = this->Revision;
   this->Changes.Finish();
-  this->FindCut();
+  this->UpdateCut();
   report.NumberOfInvertedTetrahedra =
     static_cast<std::int64_t>(counts.Inverted) + boundary.GetCounts().Inverted;
   report.NumberOfOverstretchedCells =

@@ -2,9 +2,9 @@
 #ifndef DeformVolumeIncrementalOutput_h
 #define DeformVolumeIncrementalOutput_h
 
+#include "ChangeTracker.h"
 #include "DeformRequest.h"
 #include "Extent.h"
-#include "IncrementalUpdate.h"
 
 #include <cstdint>
 #include <deque>
@@ -36,7 +36,7 @@ public:
   /// Notes that the smooth cut changed near vertices in some boxes.
   void ChangeCut(const std::vector<Extent>& boxes);
   /// Discards the last output.
-  void Forget() { this->Changes.Forget(); }
+  void Invalidate() { this->Changes.Invalidate(); }
 
   /// Notes that the whole output of a request was made, and that the resampler can make parts of it
   /// again. Sets the revision in the report.
@@ -59,21 +59,21 @@ private:
   /// Leaves the updated output on the device.
   std::vector<std::shared_ptr<DeviceOutput>> KeepOnDevice(
     const DeformRequest& request, const OutputMemory& output) const;
-  /// See IncrementalUpdate::IsInside.
+  /// See ChangeTracker::IsChangeInterior.
   bool IsChangeInside() const;
   /// Passes the vertices of the current smooth cut to Changes, once the last output includes that
   /// cut.
-  void FindCut();
+  void UpdateCut();
   /// Copies the last output to the memory of the request.
   void CopyLastOutput(const DeformRequest& request) const;
 
   WorkDevice& Device;
   DeviceVolume& Volume;
-  IncrementalUpdate Changes;
+  ChangeTracker Changes;
   bool CutIsKnown = true; // whether Changes has the vertices of the current cut only
   Resampling LastMethod = Resampling::Exact;
   Interpolation LastInterpolation = Interpolation::Linear;
-  Extent LastWholeExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent LastWholeExtent = EmptyExtent;
   std::uint64_t LastCovered = 0;
   std::uint64_t Revision = 0; // of the last output
   // The revision before the last one, and the patches that differ between these two; 0: unknown.

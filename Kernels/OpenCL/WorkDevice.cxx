@@ -66,7 +66,7 @@ std::size_t WorkDevice::GetGroupSize(const cl::Kernel& kernel, std::size_t wante
   return std::min<std::size_t>(this->WorkGroupSize ? this->WorkGroupSize : wanted, largest);
 }
 
-std::size_t WorkDevice::GetBusyGroupSize(const cl::Kernel& kernel, std::size_t wanted)
+std::size_t WorkDevice::GetHeavyGroupSize(const cl::Kernel& kernel, std::size_t wanted)
 {
   return this->HasSerialGroups() ? 1 : this->GetGroupSize(kernel, wanted);
 }

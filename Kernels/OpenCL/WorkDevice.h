@@ -47,7 +47,7 @@ public:
   std::size_t GetGroupSize(const cl::Kernel& kernel, std::size_t wanted = 64);
   /// Returns the size of the work-groups of a kernel with heavy work-groups: 1 if
   /// HasSerialGroups(), otherwise GetGroupSize().
-  std::size_t GetBusyGroupSize(const cl::Kernel& kernel, std::size_t wanted = 64);
+  std::size_t GetHeavyGroupSize(const cl::Kernel& kernel, std::size_t wanted = 64);
 
   /// Enqueues a kernel for at least `items` work-items, in work-groups of GetGroupSize(). The
   /// kernel must ignore the work-items beyond `items`.

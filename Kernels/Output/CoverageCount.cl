@@ -122,7 +122,7 @@ __kernel void ClearSections(__global uint* counters, __global const uint* bricks
 }
 
 // Clears, for all sections, the counters by which the passes for winners find their work.
-__kernel void ClearWork(__global uint* counters, const uint sections)
+__kernel void ClearWinnerCounters(__global uint* counters, const uint sections)
 {
   const size_t i = get_global_id(0);
   if (i < sections)
@@ -158,13 +158,14 @@ static void MarkSection(ulong cell, CellRun* run, __global uint* counters, const
   run->End = cell + min((int)width - x, DEFORMVOLUME_SPAN - inSpan);
 }
 
-// Follows the pass in which cells claim voxels. Marks the patches that have unsettled voxels, and the sections that
-// contain current winners. Patches that are kept are skipped. claimed: 0 if that pass was skipped because no voxel is
-// written twice; covered voxels then count as settled. words: number of uints of a key. patches: first the state of
-// each patch, then for each patch whether it has contested voxels. Unsettled voxels are contested voxels, and uncovered
-// voxels of touched patches.
+// Runs after the pass in which each cell writes its key to the voxels that it owns (DEFORMVOLUME_PASS_OWNERS). Finds
+// the patches that later passes must visit: patches with a contested voxel, which several tetrahedra write, and patches
+// with an uncovered voxel that some cell contains but does not own. Marks the sections of the current winners. Skips
+// patches that the update does not clear. claimed: 0 if the pass of the owners was skipped because no voxel is written
+// twice; covered voxels then count as settled. words: number of uints of a key. patches: first the state of each
+// patch, then for each patch whether it has contested voxels.
 // patchesOfItem: number of neighboring patches that a work-item processes. No other work-item writes to them.
-__kernel void Settle(__global const char* coverage, __global uint* winners, const uint words,
+__kernel void FindUnsettledVoxels(__global const char* coverage, __global uint* winners, const uint words,
   const int claimed, __global char* patches, __global uint* counters, const uint patchesOfItem,
   const KernelParameters p)
 {

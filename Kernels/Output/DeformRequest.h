@@ -55,10 +55,10 @@ struct DeformRequest
   /// The interpolation of arrays that are not categorical. Default: Linear.
   deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
   /// The structured extent of the output voxels.
-  Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent OutputExtent = EmptyExtent;
   /// The whole output, if OutputExtent is a part of it; empty: OutputExtent is the whole. With the
   /// exact methods, the value of a voxel depends on this extent only, bit for bit.
-  Extent WholeOutputExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent WholeOutputExtent = EmptyExtent;
   /// For each array of the volume, memory for Components elements per voxel of OutputExtent. A CPU
   /// device works directly in this memory. After a failure the contents are undefined.
   std::vector<void*> Outputs;
@@ -132,7 +132,7 @@ struct DeformReport
   std::vector<std::shared_ptr<DeviceOutput>> DeviceOutputs;
   /// A box of all output voxels that may differ from the last output: OutputExtent after a full
   /// update; smaller after an incremental update; empty if nothing changed.
-  Extent ChangedExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent ChangedExtent = EmptyExtent;
   /// The time of the mapping, in seconds. With the exact methods only that of the tetrahedra of
   /// runs and of cells at the boundary, since other kernels map and resample together. With
   /// MeshRasterization, the time to list the tetrahedra of each part of the output.

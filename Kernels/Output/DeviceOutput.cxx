@@ -34,7 +34,7 @@ void DeviceOutput::Internals::LeaveDevice(Location location) noexcept
   this->State = location;
 }
 
-void DeviceOutput::Internals::Bring() noexcept
+void DeviceOutput::Internals::Download() noexcept
 {
   const std::lock_guard<std::mutex> lock(this->Mutex);
   if (!this->IsOnDevice())
@@ -113,13 +113,13 @@ void UnreadOutputs::Set(const std::vector<std::shared_ptr<DeviceOutput>>& output
   this->OwnBuffers = ownBuffers;
 }
 
-void UnreadOutputs::Bring() noexcept
+void UnreadOutputs::Download() noexcept
 {
   for (const std::weak_ptr<DeviceOutput::Internals>& output : this->Outputs)
   {
     if (const std::shared_ptr<DeviceOutput::Internals> unread = output.lock())
     {
-      unread->Bring();
+      unread->Download();
     }
   }
   this->Outputs.clear();
@@ -163,7 +163,7 @@ void DeviceOutput::Drop()
 
 void DeviceOutput::Read()
 {
-  this->Impl->Bring();
+  this->Impl->Download();
   const std::string message = this->Impl->GetMessage();
   if (!message.empty())
   {

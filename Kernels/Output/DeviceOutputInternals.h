@@ -31,7 +31,7 @@ public:
     std::size_t Bytes;
   };
 
-  /// The buffer must be complete, and must not be written before Bring() has been called.
+  /// The buffer must be complete, and must not be written before Download() has been called.
   /// background: the value for all of the memory if copying fails.
   Internals(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Voxels& voxels,
     void* memory, const ElementBytes& background);
@@ -41,8 +41,8 @@ public:
 
   /// Copies the values to the host, unless they have been copied or dropped, and releases the
   /// buffer. Does not throw.
-  void Bring() noexcept;
-  /// The message of a failure in Bring(); empty if there was none.
+  void Download() noexcept;
+  /// The message of a failure in Download(); empty if there was none.
   std::string GetMessage();
   /// See DeviceOutput::Drop().
   void Drop() noexcept;
@@ -72,15 +72,15 @@ private:
   std::string Message;
 };
 
-/// The arrays of the last output that may still be on the device. Call Bring() before their buffers
-/// are written again.
+/// The arrays of the last output that may still be on the device. Call Download() before their
+/// buffers are written again.
 class UnreadOutputs
 {
 public:
   /// ownBuffers: whether GetMemory() counts the buffers, because no other object counts them.
   void Set(const std::vector<std::shared_ptr<DeviceOutput>>& outputs, bool ownBuffers);
   /// Copies the arrays to the host. DeviceOutput::Read() reports a failure. Does not throw.
-  void Bring() noexcept;
+  void Download() noexcept;
   /// The device memory that no other object counts, in bytes.
   std::uint64_t GetMemory() const;
 

@@ -71,7 +71,7 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
-  Extent Slab{ { 0, -1, 0, -1, 0, -1 } };
+  Extent Slab = EmptyExtent;
   std::uint64_t NumberOfVoxels = 0;
   std::vector<Element> Elements;
   PendingCopies Reads; // last member: copies end before buffers are deleted

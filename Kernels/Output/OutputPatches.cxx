@@ -25,7 +25,7 @@ struct PatchRow
 // Calls body(voxel, voxels) for each row of voxels of the patches: the index of the first voxel in
 // the output, and the number of voxels.
 template <typename Body>
-void ForRows(const Extent& output, const PatchRow& patches, Body&& body)
+void ForPatchRows(const Extent& output, const PatchRow& patches, Body&& body)
 {
   std::int64_t first[3];
   std::int64_t end[3];
@@ -50,7 +50,7 @@ void ForRows(const Extent& output, const PatchRow& patches, Body&& body)
 std::uint64_t CountCovered(const DeformRequest& request, const PatchRow& patches)
 {
   std::uint64_t covered = 0;
-  ForRows(request.OutputExtent, patches,
+  ForPatchRows(request.OutputExtent, patches,
     [&](std::int64_t voxel, std::int64_t voxels)
     {
       const signed char* row = request.Coverage + voxel;
@@ -68,10 +68,10 @@ std::uint64_t CountCovered(const DeformRequest& request, const PatchRow& patches
 }
 
 template <typename T>
-void Clear(
+void FillBackground(
   const DeformRequest& request, const PatchRow& patches, void* values, int components, T background)
 {
-  ForRows(request.OutputExtent, patches,
+  ForPatchRows(request.OutputExtent, patches,
     [&](std::int64_t voxel, std::int64_t voxels) {
       std::fill_n(static_cast<T*>(values) + voxel * components, voxels * components, background);
     });
@@ -84,7 +84,7 @@ void ClearArray(
   {
 #define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
   case ElementType::name:                                                                          \
-    Clear(request, patches, values, array.Components, ClampTo<ctype>(array.Background));           \
+    FillBackground(request, patches, values, array.Components, ClampTo<ctype>(array.Background));  \
     break;
     DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
 #undef DEFORMVOLUME_CASE
@@ -146,7 +146,7 @@ void CopyPatches(const DeformRequest& request, const std::vector<VolumeArray>& a
     {
       return;
     }
-    ForRows(request.OutputExtent, row,
+    ForPatchRows(request.OutputExtent, row,
       [&](std::int64_t voxel, std::int64_t voxels)
       {
         const std::size_t offset = static_cast<std::size_t>(voxel) * size;
@@ -175,7 +175,7 @@ void ClearPatches(const DeformRequest& request, const std::vector<VolumeArray>& 
       {
         ClearArray(request, row, request.Outputs[i], arrays[i]);
       }
-      Clear(request, row, request.Coverage, 1, std::int8_t{ 0 });
+      FillBackground(request, row, request.Coverage, 1, std::int8_t{ 0 });
     });
 }
 

@@ -11,7 +11,7 @@
 namespace deformvolume
 {
 
-/// Counts the covered voxels of patches (see IncrementalUpdate) of a request's output, on the host,
+/// Counts the covered voxels of patches (see ChangeTracker) of a request's output, on the host,
 /// in the memory of the request: for a few patches this is faster than launching a kernel. patches:
 /// in ascending order.
 std::uint64_t CountCoveredInPatches(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OutputSlab.h"
 
+#include "KernelLauncher.h"
 #include "KernelMaking.h"
-#include "Launches.h"
 #include "OutputFilling.h"
 #include "OutputPatches.h"
 #include "ResamplingProgram.h"
@@ -32,24 +32,24 @@ Extent GetWholeOutput(const DeformRequest& request)
 
 } // namespace
 
-void OutputSlab::PrepareUpdate(Launches& launches, const DeformRequest& request,
+void OutputSlab::PrepareUpdate(KernelLauncher& launcher, const DeformRequest& request,
   const std::vector<VolumeArray>& arrays, const PartToUpdate& part)
 {
   this->Finish();
-  this->Queue = launches.GetQueue();
+  this->Queue = launcher.GetQueue();
   this->WholeExtent = GetWholeOutput(request);
-  const bool onHost = GetOutputBytesPerVoxel(launches.GetContext(), arrays, request) == 0;
+  const bool onHost = GetOutputBytesPerVoxel(launcher.GetContext(), arrays, request) == 0;
   if (onHost)
   {
     // Clear patches on the host, before buffers use the memory.
     ClearPatches(request, arrays, part.Patches);
   }
-  OutputMemory::Bind(launches.GetContext(), request, arrays, this->GetExtent());
+  OutputMemory::Bind(launcher.GetContext(), request, arrays, this->GetExtent());
   const bool withWinners = part.WithWinners && !part.Bricks.empty();
   this->NumberOfListedPatches = 0;
   if (!onHost || withWinners || this->BitsUsed)
   {
-    this->SendPatches(launches, part.Patches);
+    this->SendPatches(launcher, part.Patches);
   }
   KernelParameters p = {};
   this->SetParameters(p);
@@ -57,76 +57,76 @@ void OutputSlab::PrepareUpdate(Launches& launches, const DeformRequest& request,
   {
     for (const Element& element : this->GetElements())
     {
-      FillPatches(launches, element.Buffer, element.Background, element.GetComponents(),
+      FillPatches(launcher, element.Buffer, element.Background, element.GetComponents(),
         this->PatchList, part.Patches.size(), p);
     }
   }
   if (this->BitsUsed && !part.Patches.empty())
   {
-    LaunchPatches(launches,
-      MakeKernel(GetOutputProgram(launches.GetContext()), "ClearPatchBits", this->CoverageBits,
+    LaunchPatches(launcher,
+      MakeKernel(GetOutputProgram(launcher.GetContext()), "ClearPatchBits", this->CoverageBits,
         this->PatchList, p),
       part.Patches.size());
   }
   if (withWinners)
   {
-    this->Winners.PrepareUpdate(launches, part.Patches, this->PatchList, p);
+    this->Winners.PrepareUpdate(launcher, part.Patches, this->PatchList, p);
   }
   if (!part.Bricks.empty())
   {
-    this->Counters.ClearSections(launches, part.Bricks.size(), part.BrickList, part.WithWinners);
+    this->Counters.ClearSections(launcher, part.Bricks.size(), part.BrickList, part.WithWinners);
   }
 }
 
-void OutputSlab::SendPatches(Launches& launches, const std::vector<std::uint32_t>& patches)
+void OutputSlab::SendPatches(KernelLauncher& launcher, const std::vector<std::uint32_t>& patches)
 {
   if (!patches.empty())
   {
     const std::uint64_t bytes = patches.size() * sizeof(cl_uint);
-    Reserve(launches.GetContext(), this->PatchList, bytes);
+    Reserve(launcher.GetContext(), this->PatchList, bytes);
     this->Queue.enqueueWriteBuffer(this->PatchList, CL_TRUE, 0, bytes, patches.data());
     this->NumberOfListedPatches = patches.size();
   }
 }
 
-void OutputSlab::Bind(Launches& launches, const Extent& extent, const DeformRequest& request,
+void OutputSlab::Bind(KernelLauncher& launcher, const Extent& extent, const DeformRequest& request,
   const std::vector<VolumeArray>& arrays, const VoxelGrid& voxelGrid, std::size_t numberOfBricks)
 {
   this->FinishReading();
   this->Finish();
-  this->Queue = launches.GetQueue();
+  this->Queue = launcher.GetQueue();
   this->WholeExtent = GetWholeOutput(request);
   this->Winners.Start(extent, voxelGrid);
-  OutputMemory::Bind(launches.GetContext(), request, arrays, extent);
-  this->Counters.Start(launches, numberOfBricks);
+  OutputMemory::Bind(launcher.GetContext(), request, arrays, extent);
+  this->Counters.Start(launcher, numberOfBricks);
   this->LargeCells.Start(
-    launches.GetContext(), launches.GetQueue(), GetNumberOfCells(voxelGrid.VertexExtent));
+    launcher.GetContext(), launcher.GetQueue(), GetNumberOfCells(voxelGrid.VertexExtent));
 }
 
-void OutputSlab::Clear(Launches& launches, bool coverageBits)
+void OutputSlab::Clear(KernelLauncher& launcher, bool coverageBits)
 {
   this->BitsUsed = coverageBits;
   if (coverageBits)
   {
     const std::uint64_t words = CountWords(this->GetNumberOfVoxels());
-    Reserve(launches.GetContext(), this->CoverageBits, words * sizeof(cl_uint));
-    Fill(launches, this->CoverageBits, ElementBytes::Of(cl_uint{ 0 }), words);
+    Reserve(launcher.GetContext(), this->CoverageBits, words * sizeof(cl_uint));
+    Fill(launcher, this->CoverageBits, ElementBytes::Of(cl_uint{ 0 }), words);
     return;
   }
   this->CoverageBits = cl::Buffer();
   for (const Element& element : this->GetElements())
   {
-    Fill(launches, element.Buffer, element.Background,
+    Fill(launcher, element.Buffer, element.Background,
       this->GetNumberOfVoxels() * element.GetComponents());
   }
 }
 
-void OutputSlab::ExpandCoverage(Launches& launches, bool isUpdate)
+void OutputSlab::ExpandCoverage(KernelLauncher& launcher, bool isUpdate)
 {
   if (!isUpdate)
   {
-    LaunchSteps(launches,
-      MakeKernel(GetOutputProgram(launches.GetContext()), "ExpandCoverage", this->CoverageBits,
+    LaunchSteps(launcher,
+      MakeKernel(GetOutputProgram(launcher.GetContext()), "ExpandCoverage", this->CoverageBits,
         this->GetCoverage(), cl_ulong{ this->GetNumberOfVoxels() }),
       this->GetNumberOfVoxels(), DEFORMVOLUME_EXPANDED);
   }
@@ -134,80 +134,82 @@ void OutputSlab::ExpandCoverage(Launches& launches, bool isUpdate)
   {
     KernelParameters p = {};
     this->SetParameters(p);
-    LaunchPatches(launches,
-      MakeKernel(GetOutputProgram(launches.GetContext()), "ExpandPatches", this->CoverageBits,
+    LaunchPatches(launcher,
+      MakeKernel(GetOutputProgram(launcher.GetContext()), "ExpandPatches", this->CoverageBits,
         this->GetCoverage(), this->PatchList, p),
       this->NumberOfListedPatches);
   }
 }
 
-void OutputSlab::Complete(Launches& launches, bool isUpdate)
+void OutputSlab::FillUncoveredVoxels(KernelLauncher& launcher, bool isUpdate)
 {
   if (!this->BitsUsed)
   {
     return;
   }
-  this->ExpandCoverage(launches, isUpdate);
+  this->ExpandCoverage(launcher, isUpdate);
   const std::vector<Element>& elements = this->GetElements();
   for (std::size_t i = 0; i + 1 < elements.size() && !isUpdate; ++i)
   {
-    FillUncovered(launches, elements[i].Buffer, elements[i].Background, this->GetNumberOfVoxels(),
+    FillUncovered(launcher, elements[i].Buffer, elements[i].Background, this->GetNumberOfVoxels(),
       elements[i].GetComponents(), this->CoverageBits);
   }
   this->Queue.finish(); // the output is read in another queue
 }
 
-void OutputSlab::Settle(Launches& launches, bool claimed, const KernelParameters& parameters)
+void OutputSlab::FindUnsettledVoxels(
+  KernelLauncher& launcher, bool claimed, const KernelParameters& parameters)
 {
   KernelParameters p = parameters;
   this->SetParameters(p);
   if (this->BitsUsed && !claimed)
   {
-    this->ExpandCoverage(launches, false);
+    this->ExpandCoverage(launcher, false);
   }
-  this->Winners.Settle(launches, claimed, this->GetCoverage(), this->Counters.GetBuffer(), p);
+  this->Winners.FindUnsettledVoxels(
+    launcher, claimed, this->GetCoverage(), this->Counters.GetBuffer(), p);
 }
 
-std::uint64_t OutputSlab::CountCovered(Launches& launches)
+std::uint64_t OutputSlab::CountCovered(KernelLauncher& launcher)
 {
   if (this->BitsUsed)
   {
-    return this->ReadCounts(launches, true).Covered;
+    return this->ReadCounts(launcher, true).Covered;
   }
-  OpenCLContext& context = launches.GetContext();
+  OpenCLContext& context = launcher.GetContext();
   // Many if a work-item has a thread of its own, fewer if the device executes thousands at once.
   const cl_uint voxelsOfItem = context.GetDevice().HasVectors ? 4096 : 128;
   const std::uint64_t items = (this->GetNumberOfVoxels() + voxelsOfItem - 1) / voxelsOfItem;
   const cl::Buffer sums(context.GetContext(), CL_MEM_WRITE_ONLY, items * sizeof(cl_uint));
   const cl::Kernel kernel = MakeKernel(GetOutputProgram(context), "CountCovered",
     this->GetCoverage(), cl_ulong{ this->GetNumberOfVoxels() }, voxelsOfItem, sums);
-  LaunchBusyItems(launches, kernel, static_cast<std::size_t>(items));
+  LaunchHeavyItems(launcher, kernel, static_cast<std::size_t>(items));
   return ReadSum(this->Queue, sums, static_cast<std::size_t>(items));
 }
 
 std::uint64_t OutputSlab::CountCovered(
-  Launches& launches, const std::vector<std::uint32_t>& patches)
+  KernelLauncher& launcher, const std::vector<std::uint32_t>& patches)
 {
   if (patches.empty())
   {
     return 0;
   }
-  this->SendPatches(launches, patches);
+  this->SendPatches(launcher, patches);
   const cl::Buffer sums(
-    launches.GetContext().GetContext(), CL_MEM_WRITE_ONLY, patches.size() * sizeof(cl_uint));
+    launcher.GetContext().GetContext(), CL_MEM_WRITE_ONLY, patches.size() * sizeof(cl_uint));
   KernelParameters p = {};
   this->SetParameters(p);
-  LaunchBusyItems(launches,
-    MakeKernel(GetOutputProgram(launches.GetContext()), "CountCoveredInPatches",
+  LaunchHeavyItems(launcher,
+    MakeKernel(GetOutputProgram(launcher.GetContext()), "CountCoveredInPatches",
       this->GetCoverage(), this->PatchList, static_cast<cl_uint>(patches.size()), sums, p),
     patches.size());
   return ReadSum(this->Queue, sums, patches.size());
 }
 
-SlabCounts OutputSlab::ReadCounts(Launches& launches, bool covered)
+SlabCounts OutputSlab::ReadCounts(KernelLauncher& launcher, bool covered)
 {
   const bool withBits = covered && this->BitsUsed;
-  return this->Counters.Read(launches, withBits ? this->CoverageBits : cl::Buffer(),
+  return this->Counters.Read(launcher, withBits ? this->CoverageBits : cl::Buffer(),
     withBits ? CountWords(this->GetNumberOfVoxels()) : 0);
 }
 

@@ -18,7 +18,7 @@
 namespace deformvolume
 {
 
-class Launches;
+class KernelLauncher;
 
 /// A slab of the output of exact resampling: besides its arrays and their coverage, the winners of
 /// overlaps and the counters of the bricks of cells.
@@ -26,16 +26,16 @@ class OutputSlab : public OutputMemory
 {
 public:
   /// Prepares the memory for a slab (OutputMemory::Bind()).
-  void Bind(Launches& launches, const Extent& extent, const DeformRequest& request,
+  void Bind(KernelLauncher& launcher, const Extent& extent, const DeformRequest& request,
     const std::vector<VolumeArray>& arrays, const VoxelGrid& voxelGrid, std::size_t numberOfBricks);
   /// Sets the coverage to 0, and fills the arrays with the background. If coverage is stored as
-  /// bits, Complete() fills the arrays instead. Call this after Bind().
-  void Clear(Launches& launches, bool coverageBits);
+  /// bits, FillUncoveredVoxels() fills the arrays instead. Call this after Bind().
+  void Clear(KernelLauncher& launcher, bool coverageBits);
   /// If coverage is stored as bits: expands the bits to bytes, and fills voxels that are not
   /// covered with the background. isUpdate: only patches that PrepareUpdate() cleared have changed.
-  void Complete(Launches& launches, bool isUpdate);
+  void FillUncoveredVoxels(KernelLauncher& launcher, bool isUpdate);
 
-  /// The parts of an output that an incremental update computes (see IncrementalUpdate).
+  /// The parts of an output that an incremental update computes (see ChangeTracker).
   struct PartToUpdate
   {
     const std::vector<cl_uint>& Bricks;
@@ -46,20 +46,21 @@ public:
   /// Replaces Bind() and Clear() for an incremental update. The last output and its counters must
   /// be available. Clears the patches, the counters of the bricks, and the counters by which the
   /// passes for winners find their work. Other patches keep their winners.
-  void PrepareUpdate(Launches& launches, const DeformRequest& request,
+  void PrepareUpdate(KernelLauncher& launcher, const DeformRequest& request,
     const std::vector<VolumeArray>& arrays, const PartToUpdate& part);
 
   OutputWinners& GetWinners() { return this->Winners; }
   const OutputWinners& GetWinners() const { return this->Winners; }
   /// See OutputWinners. parameters: of the mesh.
-  void Settle(Launches& launches, bool claimed, const KernelParameters& parameters);
+  void FindUnsettledVoxels(
+    KernelLauncher& launcher, bool claimed, const KernelParameters& parameters);
 
-  std::uint64_t CountCovered(Launches& launches);
-  /// Counts the covered voxels of some patches, after Complete.
-  std::uint64_t CountCovered(Launches& launches, const std::vector<std::uint32_t>& patches);
+  std::uint64_t CountCovered(KernelLauncher& launcher);
+  /// Counts the covered voxels of some patches, after FillUncoveredVoxels.
+  std::uint64_t CountCovered(KernelLauncher& launcher, const std::vector<std::uint32_t>& patches);
   /// Reads the sums of the counters. covered: whether to find SlabCounts::Covered, which requires
   /// that coverage is bits.
-  SlabCounts ReadCounts(Launches& launches, bool covered);
+  SlabCounts ReadCounts(KernelLauncher& launcher, bool covered);
 
   /// Whether the slab fits the CPU kernel, which uses float positions and 31-bit indices.
   bool FitsLanes() const;
@@ -84,11 +85,11 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
-  void SendPatches(Launches& launches, const std::vector<std::uint32_t>& patches);
-  void ExpandCoverage(Launches& launches, bool isUpdate);
+  void SendPatches(KernelLauncher& launcher, const std::vector<std::uint32_t>& patches);
+  void ExpandCoverage(KernelLauncher& launcher, bool isUpdate);
 
   cl::CommandQueue Queue;
-  Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } }; // of the output
+  Extent WholeExtent = EmptyExtent; // of the output
   cl::Buffer CoverageBits;
   bool BitsUsed = false;
   OutputWinners Winners;

@@ -2,8 +2,8 @@
 #include "OutputWinners.h"
 
 #include "HostMemory.h"
+#include "KernelLauncher.h"
 #include "KernelMaking.h"
-#include "Launches.h"
 #include "OutputFilling.h"
 #include "ResamplingProgram.h"
 
@@ -56,28 +56,29 @@ std::uint64_t OutputWinners::GetMissingMemory() const
   return this->HasBuffers() ? 0 : this->KeyBytes + 2 * this->CountPatches();
 }
 
-void OutputWinners::Prepare(Launches& launches)
+void OutputWinners::Prepare(KernelLauncher& launcher)
 {
   const std::uint64_t patchBytes = 2 * this->CountPatches();
   if (!this->HasBuffers())
   {
-    Reserve(launches.GetContext(), this->Keys, this->KeyBytes);
-    Reserve(launches.GetContext(), this->Patches, patchBytes);
+    Reserve(launcher.GetContext(), this->Keys, this->KeyBytes);
+    Reserve(launcher.GetContext(), this->Patches, patchBytes);
   }
-  Fill(launches, this->Keys, ElementBytes::Of(cl_uchar{ 0xff }), this->KeyBytes);
-  Fill(launches, this->Patches, ElementBytes::Of(cl_uchar{ 0 }), patchBytes);
+  Fill(launcher, this->Keys, ElementBytes::Of(cl_uchar{ 0xff }), this->KeyBytes);
+  Fill(launcher, this->Patches, ElementBytes::Of(cl_uchar{ 0 }), patchBytes);
 }
 
-void OutputWinners::PrepareUpdate(Launches& launches, const std::vector<std::uint32_t>& patches,
-  const cl::Buffer& list, const KernelParameters& parameters)
+void OutputWinners::PrepareUpdate(KernelLauncher& launcher,
+  const std::vector<std::uint32_t>& patches, const cl::Buffer& list,
+  const KernelParameters& parameters)
 {
   if (!patches.empty())
   {
-    FillPatches(launches, this->Keys, ElementBytes::Of(std::numeric_limits<cl_uint>::max()),
+    FillPatches(launcher, this->Keys, ElementBytes::Of(std::numeric_limits<cl_uint>::max()),
       this->KeySize / sizeof(cl_uint), list, patches.size(), parameters);
   }
   const MappedBuffer<unsigned char> known(
-    launches.GetQueue(), this->Patches, CL_MAP_READ | CL_MAP_WRITE);
+    launcher.GetQueue(), this->Patches, CL_MAP_READ | CL_MAP_WRITE);
   this->IsUpdate = true;
   const std::uint64_t all = this->CountPatches();
   std::fill_n(known.Get(), all, static_cast<unsigned char>(DEFORMVOLUME_PATCH_KEPT));
@@ -87,16 +88,16 @@ void OutputWinners::PrepareUpdate(Launches& launches, const std::vector<std::uin
   }
 }
 
-void OutputWinners::PrepareCounts(Launches& launches)
+void OutputWinners::PrepareCounts(KernelLauncher& launcher)
 {
-  Fill(launches, this->Keys, ElementBytes::Of(cl_uchar{ 0 }), this->KeyBytes);
+  Fill(launcher, this->Keys, ElementBytes::Of(cl_uchar{ 0 }), this->KeyBytes);
 }
 
-std::vector<std::uint32_t> OutputWinners::ReadCounts(Launches& launches) const
+std::vector<std::uint32_t> OutputWinners::ReadCounts(KernelLauncher& launcher) const
 {
   const std::size_t words = this->KeySize / sizeof(cl_uint);
   std::vector<std::uint32_t> counts(static_cast<std::size_t>(this->KeyBytes / sizeof(cl_uint)));
-  launches.GetQueue().enqueueReadBuffer(this->Keys, CL_TRUE, 0, this->KeyBytes, counts.data());
+  launcher.GetQueue().enqueueReadBuffer(this->Keys, CL_TRUE, 0, this->KeyBytes, counts.data());
   for (std::size_t i = 0; words > 1 && i < counts.size() / words; ++i)
   {
     counts[i] = counts[words * i];
@@ -105,34 +106,35 @@ std::vector<std::uint32_t> OutputWinners::ReadCounts(Launches& launches) const
   return counts;
 }
 
-bool OutputWinners::HasContested(Launches& launches) const
+bool OutputWinners::HasContested(KernelLauncher& launcher) const
 {
   const std::uint64_t all = this->CountPatches();
   std::vector<unsigned char> contested(static_cast<std::size_t>(all));
-  launches.GetQueue().enqueueReadBuffer(this->Patches, CL_TRUE, all, all, contested.data());
+  launcher.GetQueue().enqueueReadBuffer(this->Patches, CL_TRUE, all, all, contested.data());
   return std::find(contested.begin(), contested.end(), 1) != contested.end();
 }
 
-void OutputWinners::Settle(Launches& launches, bool claimed, const cl::Buffer& coverage,
-  const cl::Buffer& counters, const KernelParameters& parameters)
+void OutputWinners::FindUnsettledVoxels(KernelLauncher& launcher, bool claimed,
+  const cl::Buffer& coverage, const cl::Buffer& counters, const KernelParameters& parameters)
 {
   if (!claimed)
   {
     // Without the pass in which cells claim voxels, it is not known which patches are touched.
     // Assume that all patches are touched.
-    Fill(launches, this->Patches,
+    Fill(launcher, this->Patches,
       ElementBytes::Of(static_cast<cl_uchar>(DEFORMVOLUME_PATCH_TOUCHED)), this->CountPatches());
   }
   // If a work-item has a thread of its own, it processes many neighboring patches.
-  const cl_uint patchesOfItem = launches.GetContext().GetDevice().HasVectors ? 32 : 1;
-  const cl::Kernel kernel = MakeKernel(GetOutputProgram(launches.GetContext()), "Settle", coverage,
-    this->Keys, static_cast<cl_uint>(this->KeySize / sizeof(cl_uint)), cl_int{ claimed },
-    this->Patches, counters, patchesOfItem, parameters);
+  const cl_uint patchesOfItem = launcher.GetContext().GetDevice().HasVectors ? 32 : 1;
+  const cl::Kernel kernel =
+    MakeKernel(GetOutputProgram(launcher.GetContext()), "FindUnsettledVoxels", coverage, this->Keys,
+      static_cast<cl_uint>(this->KeySize / sizeof(cl_uint)), cl_int{ claimed }, this->Patches,
+      counters, patchesOfItem, parameters);
   const std::uint64_t patchesOfRow =
     static_cast<std::uint64_t>(DEFORMVOLUME_PATCHES(GetSize(this->Output, 0)));
   const std::uint64_t items =
     (patchesOfRow + patchesOfItem - 1) / patchesOfItem * (this->CountPatches() / patchesOfRow);
-  LaunchBusyItems(launches, kernel, static_cast<std::size_t>(items));
+  LaunchHeavyItems(launcher, kernel, static_cast<std::size_t>(items));
 }
 
 std::uint64_t OutputWinners::GetMemory() const

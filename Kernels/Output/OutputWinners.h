@@ -14,7 +14,7 @@
 namespace deformvolume
 {
 
-class Launches;
+class KernelLauncher;
 
 /// Returns the bytes of a winner's key. Four bytes hold a cell number up to 2^30 and two flag bits,
 /// for inverted tetrahedra and for contested voxels.
@@ -31,25 +31,26 @@ public:
   /// Returns the bytes that Prepare will allocate.
   std::uint64_t GetMissingMemory() const;
   /// Allocates the buffers if needed, and resets all winners.
-  void Prepare(Launches& launches);
+  void Prepare(KernelLauncher& launcher);
   /// Resets the winners of some patches. Other patches keep the winners of the last output. list:
   /// the patch numbers on the device. parameters: with the extent of the output.
-  void PrepareUpdate(Launches& launches, const std::vector<std::uint32_t>& patches,
+  void PrepareUpdate(KernelLauncher& launcher, const std::vector<std::uint32_t>& patches,
     const cl::Buffer& list, const KernelParameters& parameters);
-  /// Finds the unsettled voxels: voxels whose winner must still be chosen, and voxels that no cell
-  /// has written but some cell may win. Call this after the pass in which cells claim voxels, or
-  /// without that pass if no voxel is contested. claimed: whether that pass was launched. coverage,
+  /// Finds the voxels whose winner is not final: contested voxels, which several cells write, and
+  /// uncovered voxels that a cell contains but does not own. Call this after
+  /// DEFORMVOLUME_PASS_OWNERS, which may be skipped if no voxel is contested, and before
+  /// DEFORMVOLUME_PASS_MARK. claimed: whether the pass of the owners was launched. coverage,
   /// counters: of the output.
-  void Settle(Launches& launches, bool claimed, const cl::Buffer& coverage,
+  void FindUnsettledVoxels(KernelLauncher& launcher, bool claimed, const cl::Buffer& coverage,
     const cl::Buffer& counters, const KernelParameters& parameters);
-  /// Whether Settle() has found voxels that several tetrahedra write: in this update, or earlier in
-  /// patches that are kept.
-  bool HasContested(Launches& launches) const;
+  /// Whether FindUnsettledVoxels() has found voxels that several tetrahedra write: in this update,
+  /// or earlier in patches that are kept.
+  bool HasContested(KernelLauncher& launcher) const;
 
   ///@{
   /// Use the memory of the winners for one count per voxel, after winners are no longer needed.
-  void PrepareCounts(Launches& launches);
-  std::vector<std::uint32_t> ReadCounts(Launches& launches) const;
+  void PrepareCounts(KernelLauncher& launcher);
+  std::vector<std::uint32_t> ReadCounts(KernelLauncher& launcher) const;
   ///@}
 
   /// Whether some patches of the output keep their values.
@@ -64,7 +65,7 @@ private:
   bool HasBuffers() const;
   std::uint64_t CountPatches() const;
 
-  Extent Output{ { 0, -1, 0, -1, 0, -1 } };
+  Extent Output = EmptyExtent;
   std::uint64_t KeyBytes = 0; // bytes for all voxels
   std::size_t KeySize = 4;
   cl::Buffer Keys;

@@ -49,9 +49,9 @@ std::size_t GetLocalMemory(const OpenCLContext& context)
 /// Returns for each array whether the kernel interpolates it in single precision. If the kernel
 /// uses local memory, it does so for the first arrays that fit into local memory.
 std::vector<bool> FindLaneArrays(const OpenCLContext& context,
-  const std::vector<VolumeArray>& arrays, ResamplingForm form, bool hasTurnedAxes)
+  const std::vector<VolumeArray>& arrays, ResamplingKernel form, bool hasTurnedAxes)
 {
-  const bool lanes = form == ResamplingForm::Lanes;
+  const bool lanes = form == ResamplingKernel::Lanes;
   const std::size_t memory = !lanes || HasLocalBricks(context, hasTurnedAxes)
     ? GetLocalMemory(context)
     : std::numeric_limits<std::size_t>::max();
@@ -69,7 +69,7 @@ std::vector<bool> FindLaneArrays(const OpenCLContext& context,
 }
 
 std::size_t CountSlots(const OpenCLContext& context, const std::vector<VolumeArray>& arrays,
-  ResamplingForm form, bool hasTurnedAxes)
+  ResamplingKernel form, bool hasTurnedAxes)
 {
   const std::vector<bool> found = FindLaneArrays(context, arrays, form, hasTurnedAxes);
   return static_cast<std::size_t>(std::count(found.begin(), found.end(), true));
@@ -77,9 +77,9 @@ std::size_t CountSlots(const OpenCLContext& context, const std::vector<VolumeArr
 
 /// Defines the macros of the texts from LaneVectors.cl to BrickResampling.cl or ColumnCells.cl.
 std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<VolumeArray>& arrays,
-  const ResamplingVariant& variant)
+  const ResamplingOptions& variant)
 {
-  const ResamplingForm form = variant.Form;
+  const ResamplingKernel form = variant.Form;
   const bool hasTurnedAxes = variant.HasTurnedAxes;
   const std::vector<bool> inLanes = FindLaneArrays(context, arrays, form, hasTurnedAxes);
   std::string list;
@@ -96,7 +96,7 @@ std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<Vol
     list += " DO(" + index + ", " + GetTypeName(arrays[i].Type) + ", " +
       std::to_string(8 * GetElementSize(arrays[i].Type)) + ", " + std::to_string(slots++) + ")";
   }
-  const bool lanes = form == ResamplingForm::Lanes;
+  const bool lanes = form == ResamplingKernel::Lanes;
   const bool local = !lanes || HasLocalBricks(context, hasTurnedAxes);
   const std::string shape = lanes
     ? "#define ROW_CELLS DEFORMVOLUME_BRICK_X\n#define CELL_ROWS DEFORMVOLUME_BRICK_Y\n"
@@ -105,7 +105,7 @@ std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<Vol
   return "#define LANES " + std::to_string(lanes ? GetLanes(context) : 1) +
     "\n#define ROW_MEMORY " + (local ? "__local" : "__global") + "\n#define ROWS_ARE_GLOBAL " +
     (local ? "0\n" : "1\n") + shape + "#define HAS_COLUMN_KERNEL " +
-    (form == ResamplingForm::DeferredInt64 ? "0" : "1") + "\n#define PASS_IS_DIRECT " +
+    (form == ResamplingKernel::DeferredInt64 ? "0" : "1") + "\n#define PASS_IS_DIRECT " +
     (variant.IsDirect ? "1" : "0") + "\n#define LANE_SLOTS " + std::to_string(slots) +
     "\n#define LANE_ARRAYS(DO)" + list + "\n#define HAS_OTHER_ARRAYS " +
     (others.empty() ? "0" : "1") + "\n#define STORE_OTHER_ARRAYS " + others + "\n";
@@ -113,26 +113,26 @@ std::string MakeLanePreamble(const OpenCLContext& context, const std::vector<Vol
 
 /// Returns the texts of a form, without those that all forms have.
 ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeArray>& arrays,
-  const ResamplingVariant& variant)
+  const ResamplingOptions& variant)
 {
   switch (variant.Form)
   {
-    case ResamplingForm::Lanes:
+    case ResamplingKernel::Lanes:
       return ProgramText(MakeLanePreamble(context, arrays, variant)) + LaneVectors_cl +
         PacketVertices_cl + RowDisplacements_cl + BrickMapping_cl + PacketValues_cl +
         PacketSamples_cl + PacketCoverage_cl + PacketCandidates_cl + PacketWeights_cl +
         PacketWalk_cl + PacketResampling_cl + BrickResampling_cl;
-    case ResamplingForm::Columns:
-    case ResamplingForm::DeferredInt32:
-    case ResamplingForm::DeferredInt64:
+    case ResamplingKernel::Columns:
+    case ResamplingKernel::DeferredInt32:
+    case ResamplingKernel::DeferredInt64:
       return ProgramText(MakeLanePreamble(context, arrays, variant)) + LaneVectors_cl +
         PacketVertices_cl + PacketValues_cl + PacketCoverage_cl + PacketCandidates_cl +
         PacketWeights_cl + PacketWalk_cl + ColumnCells_cl +
-        (variant.Form == ResamplingForm::DeferredInt64 ? DeferredResampling_cl
-                                                       : ColumnResampling_cl);
-    case ResamplingForm::LargeCells:
+        (variant.Form == ResamplingKernel::DeferredInt64 ? DeferredResampling_cl
+                                                         : ColumnResampling_cl);
+    case ResamplingKernel::LargeCells:
       return LargeCells_cl;
-    case ResamplingForm::Cells:
+    case ResamplingKernel::Cells:
       break;
   }
   return {};
@@ -141,9 +141,10 @@ ProgramText GetFormText(const OpenCLContext& context, const std::vector<VolumeAr
 /// Additional compiler options of a form. The kernels for columns wait for memory more than they
 /// compute. Four work-groups on a multiprocessor are faster than two, although some values then do
 /// not fit into registers (Documents/resampling.md, GPUs).
-std::string GetFormOptions(const OpenCLContext& context, ResamplingForm form)
+std::string GetFormOptions(const OpenCLContext& context, ResamplingKernel form)
 {
-  const bool isColumns = form == ResamplingForm::Columns || form == ResamplingForm::DeferredInt32;
+  const bool isColumns =
+    form == ResamplingKernel::Columns || form == ResamplingKernel::DeferredInt32;
   return isColumns && context.HasExtension("cl_nv_compiler_options") ? " -cl-nv-maxrregcount=64"
                                                                      : "";
 }
@@ -167,10 +168,10 @@ cl::Program GetOutputProgram(OpenCLContext& context)
     KernelOptions);
 }
 
-cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
-  const std::vector<VolumeArray>& arrays, const ResamplingVariant& variant)
+cl::Program GetResamplingProgram(OpenCLContext& context, MappingKind mapping,
+  const std::vector<VolumeArray>& arrays, const ResamplingOptions& variant)
 {
-  const ResamplingForm form = variant.Form;
+  const ResamplingKernel form = variant.Form;
   ProgramText key = "#define KEY uint\n#define ATOMIC_MIN atomic_min\n"
                     "#define ATOMIC_CMPXCHG atomic_cmpxchg\n";
   if (variant.WideKeys)
@@ -190,8 +191,8 @@ cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
   key += variant.CoverageBits ? "#define COVERAGE_IS_BITS 1\n" : "#define COVERAGE_IS_BITS 0\n";
   return context.GetProgram(GetSamplingMeshText(variant.WithCut) + MakeArrayText(context, arrays) +
       key + GetMappingText(mapping, variant.HasTurnedAxes) + "#define HAS_CELL_KERNEL " +
-      (form == ResamplingForm::Cells ? "1\n" : "0\n") + "#define OUTLINED" +
-      (form == ResamplingForm::DeferredInt64 ? " __attribute__((noinline))\n" : "\n") +
+      (form == ResamplingKernel::Cells ? "1\n" : "0\n") + "#define OUTLINED" +
+      (form == ResamplingKernel::DeferredInt64 ? " __attribute__((noinline))\n" : "\n") +
       IntegerVectors_cl + CellVertices_cl + CutCells_cl + CellCoverage_cl +
       (variant.IsCubic ? ProgramText(VoxelTaps_cl) : ProgramText()) + SampleStoring_cl +
       VoxelWinners_cl + Resampling_cl + GetFormText(context, arrays, variant),
@@ -202,14 +203,14 @@ std::size_t GetBrickMemory(
   const OpenCLContext& context, bool hasTurnedAxes, const std::vector<VolumeArray>& arrays)
 {
   return GetBrickMemory(
-    context, hasTurnedAxes, CountSlots(context, arrays, ResamplingForm::Lanes, hasTurnedAxes));
+    context, hasTurnedAxes, CountSlots(context, arrays, ResamplingKernel::Lanes, hasTurnedAxes));
 }
 
 std::size_t GetColumnMemory(
-  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form)
+  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingKernel form)
 {
   return GetColumnMemory(
-    CountSlots(context, arrays, form, false), form == ResamplingForm::Columns ? 3 : 2);
+    CountSlots(context, arrays, form, false), form == ResamplingKernel::Columns ? 3 : 2);
 }
 
 } // namespace deformvolume

@@ -13,7 +13,7 @@ namespace deformvolume
 {
 
 /// The kernels of exact resampling.
-enum class ResamplingForm
+enum class ResamplingKernel
 {
   /// One cell at a time: Resample in Resampling.cl.
   Cells,
@@ -32,9 +32,9 @@ enum class ResamplingForm
 };
 
 /// The options of a resampling program.
-struct ResamplingVariant
+struct ResamplingOptions
 {
-  ResamplingForm Form;
+  ResamplingKernel Form;
   /// Whether there are too many cells for the 30 bits of a four-byte winner's key.
   bool WideKeys;
   /// Whether coverage is stored as bits (VoxelWinners.cl), for columns.
@@ -51,8 +51,8 @@ struct ResamplingVariant
 
 /// Returns the program of a variant for arrays of these types. Throws an Error if the device lacks
 /// a feature that the arrays need.
-cl::Program GetResamplingProgram(OpenCLContext& context, MappingForm mapping,
-  const std::vector<VolumeArray>& arrays, const ResamplingVariant& variant);
+cl::Program GetResamplingProgram(OpenCLContext& context, MappingKind mapping,
+  const std::vector<VolumeArray>& arrays, const ResamplingOptions& variant);
 
 /// Whether the kernel ResampleBricks works in local memory, because there is enough of it.
 /// Otherwise it works in a global buffer with a section for each work-item.
@@ -65,7 +65,7 @@ std::size_t GetBrickMemory(
 bool HasLocalColumns(const OpenCLContext& context);
 /// Returns the local memory of a work-group, in bytes, of a kernel for columns or deferred cells.
 std::size_t GetColumnMemory(
-  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingForm form);
+  const OpenCLContext& context, const std::vector<VolumeArray>& arrays, ResamplingKernel form);
 
 /// Returns the program of the other kernels on the output (CoverageCount.cl, OutputClearing.cl).
 cl::Program GetOutputProgram(OpenCLContext& context);

@@ -3,9 +3,9 @@
 
 #include "BrickGrid.h"
 #include "HostMemory.h"
+#include "KernelLauncher.h"
 #include "KernelMaking.h"
 #include "KernelParameters.h"
-#include "Launches.h"
 #include "OutputFilling.h"
 #include "ResamplingProgram.h"
 
@@ -26,58 +26,58 @@ cl_uint GetSectionBits(std::size_t section)
 
 } // namespace
 
-void SectionCounters::Start(Launches& launches, std::size_t numberOfBricks)
+void SectionCounters::Start(KernelLauncher& launcher, std::size_t numberOfBricks)
 {
   this->NumberOfSections = DEFORMVOLUME_SECTIONS * numberOfBricks;
-  Reserve(launches.GetContext(), this->Counters,
+  Reserve(launcher.GetContext(), this->Counters,
     this->NumberOfSections * DEFORMVOLUME_COUNTERS * sizeof(cl_uint));
-  this->Clear(launches);
+  this->Clear(launcher);
 }
 
-void SectionCounters::Clear(Launches& launches)
+void SectionCounters::Clear(KernelLauncher& launcher)
 {
-  Fill(launches, this->Counters, ElementBytes::Of(cl_uint{ 0 }),
+  Fill(launcher, this->Counters, ElementBytes::Of(cl_uint{ 0 }),
     this->NumberOfSections * DEFORMVOLUME_COUNTERS);
 }
 
 void SectionCounters::ClearSections(
-  Launches& launches, std::size_t bricks, const cl::Buffer& brickList, bool withWinners)
+  KernelLauncher& launcher, std::size_t bricks, const cl::Buffer& brickList, bool withWinners)
 {
   const auto launch = [&](const char* name, std::size_t sections, const auto&... arguments)
   {
-    LaunchSmallItems(launches,
-      MakeKernel(GetOutputProgram(launches.GetContext()), name, this->Counters, arguments...,
+    LaunchLightItems(launcher,
+      MakeKernel(GetOutputProgram(launcher.GetContext()), name, this->Counters, arguments...,
         static_cast<cl_uint>(sections)),
       sections);
   };
   launch("ClearSections", DEFORMVOLUME_SECTIONS * bricks, brickList);
   if (withWinners)
   {
-    launch("ClearWork", this->NumberOfSections);
+    launch("ClearWinnerCounters", this->NumberOfSections);
   }
 }
 
 SlabCounts SectionCounters::Read(
-  Launches& launches, const cl::Buffer& coverageBits, std::uint64_t coverageWords)
+  KernelLauncher& launcher, const cl::Buffer& coverageBits, std::uint64_t coverageWords)
 {
-  OpenCLContext& context = launches.GetContext();
+  OpenCLContext& context = launcher.GetContext();
   std::array<cl_uint, DEFORMVOLUME_SUMMARY_WORDS> words;
   Reserve(context, this->Parts, DEFORMVOLUME_PARTS * DEFORMVOLUME_SUMMED * sizeof(cl_ulong));
   Reserve(context, this->Summary, sizeof(words));
   const auto launch = [&](const char* name, std::size_t groups, const auto&... arguments)
   {
     cl::Kernel kernel(GetOutputProgram(context), name);
-    const std::size_t group = launches.GetDevice().GetBusyGroupSize(kernel, 256);
+    const std::size_t group = launcher.GetDevice().GetHeavyGroupSize(kernel, 256);
     SetArguments(
       kernel, 0, arguments..., cl::Local(DEFORMVOLUME_SUMMED * group * sizeof(cl_ulong)));
-    launches.Launch(kernel, cl::NDRange(group * groups), cl::NDRange(group));
+    launcher.Launch(kernel, cl::NDRange(group * groups), cl::NDRange(group));
   };
   // Some drivers do not accept a null buffer, so pass another one.
   launch("SumParts", DEFORMVOLUME_PARTS, this->Counters,
     static_cast<cl_uint>(this->NumberOfSections), coverageBits() ? coverageBits : this->Counters,
     cl_ulong{ coverageWords }, this->Parts);
   launch("Summarize", 1, this->Parts, this->Summary);
-  launches.GetQueue().enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());
+  launcher.GetQueue().enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());
   const auto join = [&](std::size_t word)
   { return words[word] | std::uint64_t{ words[word + 1] } << 32; };
   SlabCounts counts;
@@ -90,10 +90,10 @@ SlabCounts SectionCounters::Read(
   return counts;
 }
 
-std::vector<cl_uint> SectionCounters::FindBricks(Launches& launches, int counter) const
+std::vector<cl_uint> SectionCounters::FindBricks(KernelLauncher& launcher, int counter) const
 {
   std::vector<cl_uint> counters(this->NumberOfSections * DEFORMVOLUME_COUNTERS);
-  launches.GetQueue().enqueueReadBuffer(
+  launcher.GetQueue().enqueueReadBuffer(
     this->Counters, CL_TRUE, 0, counters.size() * sizeof(cl_uint), counters.data());
   std::vector<cl_uint> bricks;
   for (std::size_t brick = 0; brick < this->NumberOfSections / DEFORMVOLUME_SECTIONS; ++brick)

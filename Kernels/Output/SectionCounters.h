@@ -11,7 +11,7 @@
 namespace deformvolume
 {
 
-class Launches;
+class KernelLauncher;
 
 /// The sums of the counters of a slab.
 struct SlabCounts
@@ -39,20 +39,20 @@ class SectionCounters
 {
 public:
   /// Reserves the counters, and sets them to 0.
-  void Start(Launches& launches, std::size_t numberOfBricks);
+  void Start(KernelLauncher& launcher, std::size_t numberOfBricks);
   /// Sets all counters to 0, before a counting pass is repeated.
-  void Clear(Launches& launches);
+  void Clear(KernelLauncher& launcher);
   /// Sets the counters of some sections to 0, before an incremental update. bricks: number of
   /// bricks in the list. brickList: in the format of DEFORMVOLUME_BRICK_BITS. withWinners: whether
   /// to clear also, for all sections, the counters by which the passes for winners find their work.
   void ClearSections(
-    Launches& launches, std::size_t bricks, const cl::Buffer& brickList, bool withWinners);
+    KernelLauncher& launcher, std::size_t bricks, const cl::Buffer& brickList, bool withWinners);
 
   /// Reads the sums. coverageBits, words: to find SlabCounts::Covered; null and 0 otherwise.
-  SlabCounts Read(Launches& launches, const cl::Buffer& coverageBits, std::uint64_t words);
+  SlabCounts Read(KernelLauncher& launcher, const cl::Buffer& coverageBits, std::uint64_t words);
   /// Returns the bricks with sections that have a counter other than 0, in the format of
   /// DEFORMVOLUME_BRICK_BITS.
-  std::vector<cl_uint> FindBricks(Launches& launches, int counter) const;
+  std::vector<cl_uint> FindBricks(KernelLauncher& launcher, int counter) const;
 
   const cl::Buffer& GetBuffer() const { return this->Counters; }
   std::uint64_t GetMemory() const;

@@ -79,8 +79,8 @@ static KEY MakeKey(int x, int y, int z, int inverted, const KernelParameters* p)
 }
 
 // A cell that writes a voxel stores its key there. If there is a key already, the lower key stays, and the voxel is
-// marked as contested. Returns whether the voxel belongs to this cell so far. A contested voxel is written later by
-// its winner. Therefore, in an incremental update, a cell that finds its own contested key does not write the voxel.
+// marked as contested. Returns whether the voxel belongs to this cell so far. Contested voxels are written only in
+// DEFORMVOLUME_PASS_WINNER, so a cell that finds its own contested key, as in an incremental update, returns 0 here.
 static int Claim(__global KEY* winner, KEY key)
 {
   const KEY none = (KEY)-1;

@@ -63,7 +63,7 @@ void CheckNodes(AbortCheck& abortCheck, const ElasticBody& body)
 }
 
 // The number of faulty items, and the first of them.
-struct Counted
+struct FaultCounter
 {
   std::size_t Number = 0;
   std::size_t First = 0;
@@ -85,8 +85,8 @@ struct Counted
 
 void CheckShapes(AbortCheck& abortCheck, const ElasticBody& body)
 {
-  Counted inverted;
-  Counted flat;
+  FaultCounter inverted;
+  FaultCounter flat;
   ForItems(abortCheck, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
@@ -136,7 +136,7 @@ void CheckDuplicates(AbortCheck& abortCheck, const ElasticBody& body)
         });
     },
     begins, entries);
-  Counted duplicates;
+  FaultCounter duplicates;
   ForItems(abortCheck, body.Points.size(),
     [&](std::size_t node)
     {
@@ -192,7 +192,7 @@ bool IsFolded(const std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes>&
 
 void CheckMidSides(AbortCheck& abortCheck, const ElasticBody& body)
 {
-  Counted folded;
+  FaultCounter folded;
   ForItems(abortCheck, body.MidSides.size(),
     [&](std::size_t t)
     {
@@ -237,7 +237,7 @@ void CheckSliding(const ElasticBody& body)
       slides[node] = slides[node] || normal != glm::dvec3(0.0);
     }
   }
-  Counted contradictory;
+  FaultCounter contradictory;
   for (std::size_t node = 0; node < slides.size(); ++node)
   {
     if (slides[node] && body.IsFixed(node))
@@ -272,7 +272,7 @@ std::array<glm::dvec3, 2> GetSlidingNormals(const ElasticBody& body, std::size_t
   const glm::dvec3 second = get(body.SecondSlidingNormals);
   const glm::dvec3 across = second - glm::dot(second, first) * first;
   return { first,
-    glm::length(across) > ElasticBody::LargestSine ? glm::normalize(across) : glm::dvec3(0.0) };
+    glm::length(across) > ElasticBody::ParallelSine ? glm::normalize(across) : glm::dvec3(0.0) };
 }
 
 bool IsFlat(const std::array<glm::dvec3, 4>& points)
@@ -384,25 +384,25 @@ void CheckLoads(const ElasticBody& body, const BodyLoads& loads)
 void CheckHeldNodes(const ElasticBody& body, const std::vector<HeldNode>& held)
 {
   std::vector<unsigned char> isHeld(body.Points.size(), 0);
-  for (const HeldNode& node : held)
+  for (const HeldNode& heldNode : held)
   {
-    const auto weights = static_cast<std::size_t>(node.Node);
-    if (node.Node < 0 || weights >= body.Points.size())
+    const auto node = static_cast<std::size_t>(heldNode.Node);
+    if (heldNode.Node < 0 || node >= body.Points.size())
     {
-      throw Error("A handle holds the node " + std::to_string(node.Node) + ", but the mesh has " +
-        std::to_string(body.Points.size()) + " nodes.");
+      throw Error("A handle holds the node " + std::to_string(heldNode.Node) +
+        ", but the mesh has " + std::to_string(body.Points.size()) + " nodes.");
     }
-    if (!IsFinite(node.Displacement))
+    if (!IsFinite(heldNode.Displacement))
     {
-      throw Error("The displacement of the handle that holds node " + std::to_string(node.Node) +
-        " is not finite.");
+      throw Error("The displacement of the handle that holds node " +
+        std::to_string(heldNode.Node) + " is not finite.");
     }
-    if (body.IsFixed(weights) || isHeld[weights] != 0)
+    if (body.IsFixed(node) || isHeld[node] != 0)
     {
-      throw Error("The node " + std::to_string(node.Node) +
-        (body.IsFixed(weights) ? " is fixed, and a handle holds it." : " is held by two handles."));
+      throw Error("The node " + std::to_string(heldNode.Node) +
+        (body.IsFixed(node) ? " is fixed, and a handle holds it." : " is held by two handles."));
     }
-    isHeld[weights] = 1;
+    isHeld[node] = 1;
   }
 }
 

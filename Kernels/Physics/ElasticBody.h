@@ -68,7 +68,7 @@ struct ElasticBody
 
   /// Directions count as parallel if the sine of the angle between them is at most this number:
   /// coordinates may come from floats.
-  static constexpr double LargestSine = 1e-3;
+  static constexpr double ParallelSine = 1e-3;
 
   /// The material of a tetrahedron.
   const ElasticMaterial& GetMaterial(std::size_t tetrahedron) const
@@ -121,7 +121,7 @@ DEFORMVOLUME_EXPORT glm::dvec3 GetUnitVector(const glm::dvec3& vector);
 
 /// The directions in which a sliding node cannot move: of length 1, and normal to each other. 0:
 /// there is no such direction. The second direction is 0 if the two planes are parallel within
-/// ElasticBody::LargestSine.
+/// ElasticBody::ParallelSine.
 DEFORMVOLUME_EXPORT std::array<glm::dvec3, 2> GetSlidingNormals(
   const ElasticBody& body, std::size_t node);
 

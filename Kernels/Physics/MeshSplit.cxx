@@ -230,7 +230,7 @@ std::vector<TetrahedronPair> FindUnparted(
   return pairs;
 }
 
-void SplitNear(const SplitRegion& region, const SheetCrossings& crossings,
+void SplitNodesInRegion(const SplitRegion& region, const SheetCrossings& crossings,
   std::size_t numberOfNodes, const std::vector<TetrahedronPair>& unparted, MeshSplit& split)
 {
   const FaceNeighbors neighbors(region.GetTetrahedra(), region.GetNumberOfNodes());
@@ -244,7 +244,7 @@ void SplitNear(const SplitRegion& region, const SheetCrossings& crossings,
     if (states[face] == SplitNow && face < next)
     {
       ++split.NumberOfFaces;
-      split.Unparted.push_back({ { static_cast<std::int32_t>(region.GetNumber(face / 4)),
+      split.StillConnected.push_back({ { static_cast<std::int32_t>(region.GetNumber(face / 4)),
         static_cast<std::int32_t>(region.GetNumber(next / 4)) } });
     }
   }
@@ -273,17 +273,17 @@ MeshSplit SplitMesh(const std::vector<glm::dvec3>& positions,
   const MeshSteps steps = FindSteps(positions, tetrahedra);
   MeshSplit split;
   split.Tetrahedra = tetrahedra;
-  split.Unparted = unparted;
+  split.StillConnected = unparted;
   if (steps.IsValid())
   {
     const SheetCrossings crossings(steps, sheetPoints, sheetTriangles);
     if (!crossings.IsEmpty())
     {
       const SplitRegion region(positions, tetrahedra, steps, crossings);
-      SplitNear(region, crossings, positions.size(), unparted, split);
+      SplitNodesInRegion(region, crossings, positions.size(), unparted, split);
     }
   }
-  split.Unparted = FindUnparted(std::move(split.Unparted), split.Tetrahedra);
+  split.StillConnected = FindUnparted(std::move(split.StillConnected), split.Tetrahedra);
   return split;
 }
 

@@ -32,7 +32,7 @@ struct MeshSplit
   /// The pairs of tetrahedra whose common face was split, by this cut or an earlier one, but which
   /// still share all three nodes of that face. They lie where a cut ends. Ascending; pass them to
   /// the next cut of the mesh.
-  std::vector<TetrahedronPair> Unparted;
+  std::vector<TetrahedronPair> StillConnected;
 };
 
 /// Cuts a deformation mesh along those of its faces that are nearest to a sheet.
@@ -52,10 +52,10 @@ struct MeshSplit
 /// separated as well: otherwise they could connect the two sides of the cut. Other nodes do not
 /// change.
 ///
-/// A split face whose two tetrahedra still share all three nodes is listed in Unparted. Pass that
-/// list to the next cut: a cut that continues an earlier one then opens these faces too, however
-/// short both cuts are. Positions are rounded independently for each cut, so the sheets of two such
-/// cuts should overlap slightly.
+/// A split face whose two tetrahedra still share all three nodes is listed in StillConnected. Pass
+/// that list to the next cut: a cut that continues an earlier one then opens these faces too,
+/// however short both cuts are. Positions are rounded independently for each cut, so the sheets of
+/// two such cuts should overlap slightly.
 ///
 /// positions: of all nodes, in the state that the sheet refers to, for example the deformed one.
 /// sheetTriangles: three point numbers each; triangles without area split nothing. unparted: from

@@ -118,7 +118,7 @@ std::vector<std::array<std::int32_t, 2>> AddMidSideNodes(ElasticBody& body)
   return ends;
 }
 
-std::vector<std::int32_t> SplitMidSides(const std::vector<Tetrahedron>& tetrahedra,
+std::vector<std::int32_t> SplitMidSideNodes(const std::vector<Tetrahedron>& tetrahedra,
   std::int32_t numberOfNodes, std::vector<MidSideNodes>& midSides)
 {
   std::vector<std::int32_t> origins;

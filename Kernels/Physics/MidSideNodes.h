@@ -38,7 +38,7 @@ DEFORMVOLUME_EXPORT std::vector<std::array<std::int32_t, 2>> AddMidSideNodes(Ela
 /// the number numberOfNodes.
 ///
 /// tetrahedra: with their new corners. midSides: input as before the cut; output as after it.
-DEFORMVOLUME_EXPORT std::vector<std::int32_t> SplitMidSides(
+DEFORMVOLUME_EXPORT std::vector<std::int32_t> SplitMidSideNodes(
   const std::vector<Tetrahedron>& tetrahedra, std::int32_t numberOfNodes,
   std::vector<MidSideNodes>& midSides);
 

@@ -128,7 +128,7 @@ struct QuadraticTetrahedron
 
   /// The shape functions at Gauss point i: the shares of the ten nodes of a force that acts at this
   /// point.
-  static std::array<double, NumberOfNodes> GetShares(std::size_t i)
+  static std::array<double, NumberOfNodes> GetShapeFunctions(std::size_t i)
   {
     const glm::dvec4 weights = GetGaussPoint(i);
     std::array<double, NumberOfNodes> shares;

@@ -15,7 +15,7 @@ namespace
 
 constexpr std::size_t TetrahedraAtOnce = 16384;
 
-SnappedPoint Round(const glm::dvec3& point)
+SnappedPoint RoundPoint(const glm::dvec3& point)
 {
   return SnappedPoint(std::llround(point.x), std::llround(point.y), std::llround(point.z));
 }
@@ -47,7 +47,7 @@ SnappedBox GetEnlargedBox(
 
 // Returns the tetrahedra for which isChosen(t) is true, in ascending order.
 template <typename IsChosen>
-std::vector<std::size_t> Choose(std::size_t count, IsChosen&& isChosen)
+std::vector<std::size_t> SelectNumbers(std::size_t count, IsChosen&& isChosen)
 {
   std::vector<std::vector<std::size_t>> parts((count + TetrahedraAtOnce - 1) / TetrahedraAtOnce);
   ParallelForParts(count, TetrahedraAtOnce,
@@ -75,7 +75,7 @@ SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
   const std::vector<Tetrahedron>& tetrahedra, const MeshSteps& steps,
   const SheetCrossings& crossings)
 {
-  const std::vector<std::size_t> near = Choose(tetrahedra.size(),
+  const std::vector<std::size_t> near = SelectNumbers(tetrahedra.size(),
     [&](std::size_t t)
     { return crossings.MayIntersect(GetEnlargedBox(positions, tetrahedra[t], steps)); });
   std::vector<unsigned char> isNodeOfNear(positions.size(), 0);
@@ -90,7 +90,7 @@ SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
   {
     const auto hasNode = [&](std::int32_t node)
     { return isNodeOfNear[static_cast<std::size_t>(node)]; };
-    this->Numbers = Choose(tetrahedra.size(),
+    this->Numbers = SelectNumbers(tetrahedra.size(),
       [&](std::size_t t)
       {
         const Tetrahedron& nodes = tetrahedra[t];
@@ -119,7 +119,7 @@ SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
         {
           sum += steps.Get(positions[static_cast<std::size_t>(node)]);
         }
-        this->Centroids[t] = Round(0.25 * sum);
+        this->Centroids[t] = RoundPoint(0.25 * sum);
       }
     });
 }

@@ -202,7 +202,7 @@ void MeshRasterizer::RunTiles(RasterParameters p, const OutputMemory& target,
   const cl::Buffer counters(context.GetContext(), CL_MEM_WRITE_ONLY, counterBytes);
   const QueueGuard guard(queue);
   const cl_uint parameters = this->SetArguments(p, target, counters);
-  const std::size_t group = this->Device->GetBusyGroupSize(this->Kernel);
+  const std::size_t group = this->Device->GetHeavyGroupSize(this->Kernel);
   const std::size_t step = (tiles + LaunchesPerSlab - 1) / LaunchesPerSlab;
   cl::Event previous;
   for (std::size_t tile = 0; tile < tiles; tile += step)

@@ -76,7 +76,8 @@ static int IsUnmasked(
   {
     const int o = Tetrahedra[location->Tetrahedron][k] ^ mirror;
     const size_t voxel =
-      VertexInChunk(location->Cell[0] + (o & 1), location->Cell[1] + (o >> 2), location->Cell[2] + (o >> 1 & 1), p);
+      VertexInChunk(
+        location->Cell[0] + OFFSET_X(o), location->Cell[1] + OFFSET_Y(o), location->Cell[2] + OFFSET_Z(o), p);
     if (r->HasBlanked && masks->Blanked[voxel])
     {
       return 0;

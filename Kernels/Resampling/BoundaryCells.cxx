@@ -7,10 +7,10 @@
 #include "DisplacementSource.h"
 #include "HostMemory.h"
 #include "IndexBounds.h" // for GetOutputTransform
+#include "KernelLauncher.h"
 #include "KernelMaking.h"
 #include "KernelSources.h"
 #include "KernelText.h"
-#include "Launches.h"
 #include "OutputSlab.h"
 #include "SamplingMeshText.h"
 #include "WorkDevice.h"
@@ -56,12 +56,12 @@ cl::Program GetBoundaryProgram(
 } // namespace
 
 BoundaryCells::BoundaryCells(WorkDevice& device, MemoryBudget& budget, DeviceVolume& volume,
-  const DisplacementSource& source, Launches& launches)
+  const DisplacementSource& source, KernelLauncher& launcher)
   : Device(device)
   , Budget(budget)
   , Volume(volume)
   , Source(source)
-  , Launched(launches)
+  , Launcher(launcher)
 {
 }
 
@@ -163,7 +163,7 @@ void BoundaryCells::MoveCorners()
   const cl_uint i =
     this->Source.SetPointArguments(kernel, SetArguments(kernel, 0, this->Corners), this->Pieces);
   SetArguments(kernel, i, this->Positions, this->Displacements, count);
-  this->Launched.AddMapping(this->Device.Launch(kernel, count));
+  this->Launcher.AddMapping(this->Device.Launch(kernel, count));
 }
 
 std::vector<cl_uint> BoundaryCells::ListTiles(
@@ -266,7 +266,7 @@ void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& out
   cl::Kernel kernel(GetBoundaryProgram(this->Device.GetContext(), arrays, output.HasCoverageBits(),
                       this->Device.HasSerialGroups()),
     "ResampleBoundary");
-  const std::size_t group = this->Device.GetBusyGroupSize(kernel);
+  const std::size_t group = this->Device.GetHeavyGroupSize(kernel);
   const Extent& whole = GetWholeExtent(this->Volume.GetVoxelGrid());
   const std::vector<VolumeChunk>& chunks = this->Volume.GetChunks();
   const DeviceMasks& masks = this->Volume.GetMasks();
@@ -289,7 +289,8 @@ void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& out
       {
         i = SetArguments(kernel, i, sources[a], output.GetArray(a));
       }
-      this->Launched.Run(request, kernel, cl::NDRange(numberOfTiles * group), cl::NDRange(group));
+      this->Launcher.LaunchAndReport(
+        request, kernel, cl::NDRange(numberOfTiles * group), cl::NDRange(group));
     }
   }
 }

@@ -15,7 +15,7 @@ namespace deformvolume
 
 class DeviceVolume;
 class DisplacementSource;
-class Launches;
+class KernelLauncher;
 class MemoryBudget;
 class OutputSlab;
 class WorkDevice;
@@ -27,7 +27,7 @@ class BoundaryCells
 {
 public:
   BoundaryCells(WorkDevice& device, MemoryBudget& budget, DeviceVolume& volume,
-    const DisplacementSource& source, Launches& launches);
+    const DisplacementSource& source, KernelLauncher& launcher);
 
   /// Sets the boundary of the mesh or field of the displacement source. tetrahedra: the tetrahedra
   /// of the mesh; null for a field.
@@ -64,7 +64,7 @@ private:
   MemoryBudget& Budget;
   DeviceVolume& Volume;
   const DisplacementSource& Source;
-  Launches& Launched;
+  KernelLauncher& Launcher;
   std::vector<MeshBoundary::Piece> Boundary;
   std::size_t NumberOfCorners = 0; // without duplicates: pieces share nodes
   cl::Buffer Corners;

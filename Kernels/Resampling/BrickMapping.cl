@@ -20,7 +20,7 @@ typedef struct
 #define OF_EIGHT(bit) ((bit) * 0x0101010101010101UL)
 #define SOURCES OF_EIGHT(DEFORMVOLUME_VERTEX_SOURCE)
 #define INTERIORS OF_EIGHT(DEFORMVOLUME_VERTEX_INTERIOR)
-#define TOGETHER OF_EIGHT(DEFORMVOLUME_VERTEX_TOGETHER)
+#define TOGETHER OF_EIGHT(DEFORMVOLUME_VERTEX_UNSPLIT)
 
 // Returns the states of sixteen vertices of a row as eight bytes. Byte k has the bits that vertices k and k + 8 have in
 // common. rowInside: whether the row is not at the border of the volume.
@@ -126,7 +126,7 @@ static __attribute__((always_inline)) void MapOne(const MappedRow* row, int x, i
     flags->Border |= 1u << (i >> 3);
   }
 #if HAS_CUT
-  if (!(state & DEFORMVOLUME_VERTEX_TOGETHER))
+  if (!(state & DEFORMVOLUME_VERTEX_UNSPLIT))
   {
     flags->Split |= 1u << (i >> 3);
   }

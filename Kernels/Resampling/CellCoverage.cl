@@ -207,7 +207,7 @@ static OUTLINED CellState CellStateOf(
   for (int v = 0; v < 8; ++v)
   {
     const int o = v ^ mirror;
-    const int state = StateOf(mesh->State, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+    const int state = StateOf(mesh->State, x + OFFSET_X(o), y + OFFSET_Y(o), z + OFFSET_Z(o), p);
     cell.Interior |= (state & DEFORMVOLUME_VERTEX_INTERIOR) ? 1 << v : 0;
     cell.Regular |= (state & DEFORMVOLUME_VERTEX_REGULAR) ? 1 << v : 0;
   }

@@ -116,7 +116,7 @@ static int LoadCell(
   for (int v = 0; v < 8; ++v)
   {
     const int o = v ^ mirror;
-    const int4 q = VertexPosition(mesh, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+    const int4 q = VertexPosition(mesh, x + OFFSET_X(o), y + OFFSET_Y(o), z + OFFSET_Z(o), p);
     vertices[v].x = q.x;
     vertices[v].y = q.y;
     vertices[v].z = q.z;

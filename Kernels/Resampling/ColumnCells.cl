@@ -52,7 +52,7 @@ static uint MapVertex(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY 
   uint flags = state & DEFORMVOLUME_VERTEX_INTERIOR ? 0 : FLAG_BORDER;
   flags |= state & DEFORMVOLUME_CELL_WHOLE ? FLAG_WHOLE : 0;
 #if HAS_CUT
-  flags |= state & DEFORMVOLUME_VERTEX_TOGETHER ? 0 : FLAG_SPLIT;
+  flags |= state & DEFORMVOLUME_VERTEX_UNSPLIT ? 0 : FLAG_SPLIT;
 #endif
 #define PUT_COLUMN_VALUE(index, TYPE, BITS, SLOT)                                                  \
   {                                                                                                \
@@ -286,7 +286,7 @@ static void MapCell(const SamplingMesh* mesh, int x, int y, int z, ROW_MEMORY fl
   for (int v = 0; v < 8; ++v)
   {
     const int o = v ^ mirror;
-    flags |= MapVertex(mesh, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1),
+    flags |= MapVertex(mesh, x + OFFSET_X(o), y + OFFSET_Y(o), z + OFFSET_Z(o),
       slot + (v >> 1 & 1) * (ROWS * ROW) + (v >> 2) * ROW + (v & 1 ? ODD : 0), p ARRAY_ARGUMENTS);
   }
   MakeCellPacket(slot, ROW, ROWS * ROW, 0, x, y, z, flags, cell, p);

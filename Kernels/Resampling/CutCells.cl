@@ -51,7 +51,7 @@ static void LoadCut(
     const int o = v ^ mirror;
     // The list has all vertices of a cell with crossed tetrahedra.
     cut->Indices[v] = FindCutVertex(
-      mesh->Cut.Rows, mesh->Cut.Vertices, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+      mesh->Cut.Rows, mesh->Cut.Vertices, x + OFFSET_X(o), y + OFFSET_Y(o), z + OFFSET_Z(o), p);
     cut->Distances[v] = mesh->Cut.Vertices[cut->Indices[v]].Distance;
     cut->Negative |= (cut->Distances[v] < 0.0f) << v;
     open |= (mesh->Cut.Positions[cut->Indices[v]].w != 0) << v;
@@ -88,7 +88,7 @@ static int SideOfSample(const SamplingMesh* mesh, int x, int y, int z, int t, co
     const int v = Tetrahedra[t][k];
     const int o = v ^ mirror;
     const int index = weights[k]
-      ? FindCutVertex(mesh->Cut.Rows, mesh->Cut.Vertices, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p)
+      ? FindCutVertex(mesh->Cut.Rows, mesh->Cut.Vertices, x + OFFSET_X(o), y + OFFSET_Y(o), z + OFFSET_Z(o), p)
       : -1;
     if (weights[k] && index < 0)
     {

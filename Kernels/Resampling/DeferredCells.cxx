@@ -73,7 +73,7 @@ void DeferredCells::Clear()
 
 std::size_t DeferredCells::GetGroup(const cl::Kernel& kernel)
 {
-  return std::min(this->Device.GetBusyGroupSize(kernel), LargestDeferredGroup);
+  return std::min(this->Device.GetHeavyGroupSize(kernel), LargestDeferredGroup);
 }
 
 std::size_t DeferredCells::GetItems(std::size_t group)

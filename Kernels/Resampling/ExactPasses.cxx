@@ -6,8 +6,8 @@
 #include "DisplacementSource.h"
 #include "Error.h"
 #include "HostMemory.h"
+#include "KernelLauncher.h"
 #include "KernelMaking.h"
-#include "Launches.h"
 #include "OutputSlab.h"
 #include "WorkDevice.h"
 
@@ -31,45 +31,45 @@ namespace
 constexpr std::int64_t CellsOfProcessors = std::int64_t{ 1 } << 23;
 constexpr std::int64_t CellsOfColumns = std::int64_t{ 1 } << 25;
 
-const char* GetKernelName(ResamplingForm form)
+const char* GetKernelName(ResamplingKernel form)
 {
   switch (form)
   {
-    case ResamplingForm::Cells:
+    case ResamplingKernel::Cells:
       return "Resample";
-    case ResamplingForm::Lanes:
+    case ResamplingKernel::Lanes:
       return "ResampleBricks";
-    case ResamplingForm::Columns:
+    case ResamplingKernel::Columns:
       return "ResampleColumns";
-    case ResamplingForm::DeferredInt32:
+    case ResamplingKernel::DeferredInt32:
       return "ResampleDeferredInt32";
-    case ResamplingForm::DeferredInt64:
+    case ResamplingKernel::DeferredInt64:
       return "ResampleDeferredInt64";
-    case ResamplingForm::LargeCells:
+    case ResamplingKernel::LargeCells:
       return "ResampleLargeCells";
   }
   return "";
 }
 
-bool IsByColumns(ResamplingForm form)
+bool IsByColumns(ResamplingKernel form)
 {
-  return form == ResamplingForm::Columns || form == ResamplingForm::DeferredInt32 ||
-    form == ResamplingForm::DeferredInt64;
+  return form == ResamplingKernel::Columns || form == ResamplingKernel::DeferredInt32 ||
+    form == ResamplingKernel::DeferredInt64;
 }
 
 } // namespace
 
-ExactPasses::ExactPasses(
-  WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches)
+ExactPasses::ExactPasses(WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source,
+  KernelLauncher& launcher)
   : Device(device)
   , Volume(volume)
   , Source(source)
-  , Launched(launches)
+  , Launcher(launcher)
   , Deferred(device)
 {
 }
 
-ResamplingForm ExactPasses::ChooseForm(
+ResamplingKernel ExactPasses::ChooseKernel(
   const DeformRequest& request, const OutputSlab& output, int pass)
 {
   const Resampling method = request.Method;
@@ -101,13 +101,13 @@ ResamplingForm ExactPasses::ChooseForm(
   }
   if (!fits || isCubic || method == Resampling::ExactByCell || pass == DEFORMVOLUME_PASS_COUNT)
   {
-    return ResamplingForm::Cells;
+    return ResamplingKernel::Cells;
   }
   if (hasVectors && method != Resampling::ExactByColumns)
   {
-    return ResamplingForm::Lanes;
+    return ResamplingKernel::Lanes;
   }
-  return hasColumns ? ResamplingForm::Columns : ResamplingForm::Cells;
+  return hasColumns ? ResamplingKernel::Columns : ResamplingKernel::Cells;
 }
 
 int ExactPasses::GetLayersPerLaunch() const
@@ -128,11 +128,11 @@ std::size_t ExactPasses::GetNumberOfLaunches() const
 }
 
 cl::Kernel ExactPasses::MakeKernel(
-  const DeformRequest& request, ResamplingForm form, const OutputSlab& output, int pass)
+  const DeformRequest& request, ResamplingKernel form, const OutputSlab& output, int pass)
 {
   OpenCLContext& context = this->Device.GetContext();
   const std::vector<VolumeArray>& arrays = this->Volume.GetArrays().Get();
-  if (form == ResamplingForm::Lanes)
+  if (form == ResamplingKernel::Lanes)
   {
     Reserve(context, this->TakenBricks, sizeof(cl_uint));
     if (!HasLocalBricks(context, this->Volume.HasTurnedAxes()))
@@ -144,16 +144,16 @@ cl::Kernel ExactPasses::MakeKernel(
   }
   const bool wideKeys = GetWinnerSize(this->Volume.GetVoxelGrid()) == 8;
   return cl::Kernel(
-    GetResamplingProgram(context, this->Source.GetMappingForm(), arrays,
+    GetResamplingProgram(context, this->Source.GetMappingKind(), arrays,
       { form, wideKeys, output.HasCoverageBits(), this->Volume.GetMasks().HasCut(),
-        (form == ResamplingForm::Columns || form == ResamplingForm::DeferredInt32) &&
+        (form == ResamplingKernel::Columns || form == ResamplingKernel::DeferredInt32) &&
           pass == DEFORMVOLUME_PASS_DIRECT,
         request.Interpolation == Interpolation::Cubic, this->Volume.HasTurnedAxes() }),
     GetKernelName(form));
 }
 
 void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
-  const OutputSlab& output, ResamplingForm form, const KernelParameters& p)
+  const OutputSlab& output, ResamplingKernel form, const KernelParameters& p)
 {
   const DeviceMasks& masks = this->Volume.GetMasks();
   const cl::Buffer& other = this->Volume.GetRestPositions();
@@ -169,14 +169,14 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   {
     i = masks.GetCut().SetArguments(kernel, i);
   }
-  if (form != ResamplingForm::LargeCells)
+  if (form != ResamplingKernel::LargeCells)
   {
     kernel.setArg(i++, this->Bricks);
   }
   OpenCLContext& context = this->Device.GetContext();
   const std::vector<VolumeArray>& types = this->Volume.GetArrays().Get();
   const bool turned = this->Volume.HasTurnedAxes();
-  if (form == ResamplingForm::Lanes)
+  if (form == ResamplingKernel::Lanes)
   {
     kernel.setArg(i++, this->TakenBricks);
     if (HasLocalBricks(context, turned))
@@ -193,7 +193,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
     i = deformvolume::SetArguments(
       kernel, i, this->Deferred.GetBuffer(), cl::Local(GetColumnMemory(context, types, form)));
   }
-  else if (form == ResamplingForm::Cells)
+  else if (form == ResamplingKernel::Cells)
   {
     kernel.setArg(i++, cl::Local(3 * sizeof(cl_int) * DEFORMVOLUME_CUBOID_VERTICES));
   }
@@ -210,7 +210,7 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
 }
 
 void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
-  const OutputSlab& output, ResamplingForm form, const KernelParameters& parameters)
+  const OutputSlab& output, ResamplingKernel form, const KernelParameters& parameters)
 {
   // An empty list of bricks.
   KernelParameters p = parameters;
@@ -218,19 +218,19 @@ void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
   this->SetArguments(kernel, chunk, output, form, p);
   const auto getGroup = [&]
   {
-    const std::size_t group = this->Device.GetBusyGroupSize(kernel);
+    const std::size_t group = this->Device.GetHeavyGroupSize(kernel);
     switch (form)
     {
-      case ResamplingForm::Cells:
+      case ResamplingKernel::Cells:
         return cl::NDRange(group, 1, 1);
-      case ResamplingForm::Lanes:
+      case ResamplingKernel::Lanes:
         return cl::NDRange(1);
-      case ResamplingForm::Columns:
+      case ResamplingKernel::Columns:
         return cl::NDRange(this->GetColumnGroup(kernel), 1, 1);
-      case ResamplingForm::DeferredInt32:
-      case ResamplingForm::DeferredInt64:
+      case ResamplingKernel::DeferredInt32:
+      case ResamplingKernel::DeferredInt64:
         return cl::NDRange(this->Deferred.GetGroup(kernel));
-      case ResamplingForm::LargeCells:
+      case ResamplingKernel::LargeCells:
         break;
     }
     return cl::NDRange(group);
@@ -240,7 +240,7 @@ void ExactPasses::PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk,
 
 std::size_t ExactPasses::GetColumnGroup(const cl::Kernel& kernel)
 {
-  return this->Device.GetBusyGroupSize(kernel, DEFORMVOLUME_SPAN * DEFORMVOLUME_BRICK_Y / 2);
+  return this->Device.GetHeavyGroupSize(kernel, DEFORMVOLUME_SPAN * DEFORMVOLUME_BRICK_Y / 2);
 }
 
 std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
@@ -252,7 +252,7 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
   }
   // Take one brick at a time if there are few bricks for each compute unit.
   const int leastForTurns = 32 * static_cast<int>(this->Device.GetContext().GetNumberOfUnits());
-  std::vector<PlannedLaunch> launches;
+  std::vector<PlannedLaunch> launcher;
   for (const VolumeChunk& chunk : this->Volume.GetChunks())
   {
     for (int begin = chunk.LayersBegin; begin < chunk.LayersEnd;)
@@ -269,11 +269,11 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
       this->Volume.GetBricks().AppendBricks(p.LayersBegin, p.LayersEnd, bricks);
       p.ListEnd = static_cast<int>(bricks.size());
       p.Portion = p.ListEnd - p.ListBegin < leastForTurns ? 1 : BrickGrid::BricksInTurn;
-      launches.push_back({ chunk, p });
+      launcher.push_back({ chunk, p });
       begin = p.LayersEnd;
     }
   }
-  return launches;
+  return launcher;
 }
 
 std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanSome(
@@ -288,45 +288,45 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanSome(
   const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
     static_cast<std::size_t>(p.BrickCount[1]) *
     static_cast<std::size_t>(this->GetLayersPerLaunch() / DEFORMVOLUME_BRICK_Z);
-  std::vector<PlannedLaunch> launches;
+  std::vector<PlannedLaunch> launcher;
   for (std::size_t begin = 0; begin < bricks.size(); begin += step)
   {
     p.ListBegin = static_cast<int>(begin);
     p.ListEnd = static_cast<int>(std::min(begin + step, bricks.size()));
-    launches.push_back({ chunk, p });
+    launcher.push_back({ chunk, p });
   }
-  this->Launched.ExpectAtLeast(launches.size());
-  return launches;
+  this->Launcher.ExpectAtLeast(launcher.size());
+  return launcher;
 }
 
-void ExactPasses::Launch(
-  const DeformRequest& request, cl::Kernel& kernel, ResamplingForm form, const KernelParameters& p)
+void ExactPasses::Launch(const DeformRequest& request, cl::Kernel& kernel, ResamplingKernel form,
+  const KernelParameters& p)
 {
   const auto bricks = static_cast<cl_uint>(p.ListEnd - p.ListBegin);
-  if (form == ResamplingForm::Lanes)
+  if (form == ResamplingKernel::Lanes)
   {
     this->Device.GetQueue().enqueueFillBuffer(this->TakenBricks, cl_uint{ 0 }, 0, sizeof(cl_uint));
-    this->Launched.Run(request, kernel,
+    this->Launcher.LaunchAndReport(request, kernel,
       cl::NDRange(std::min(this->Device.GetContext().GetNumberOfUnits(), bricks)), cl::NDRange(1));
     return;
   }
-  if (form == ResamplingForm::Columns)
+  if (form == ResamplingKernel::Columns)
   {
     this->Deferred.Clear();
     const std::size_t group = this->GetColumnGroup(kernel);
-    this->Launched.Run(request, kernel, cl::NDRange(group * DEFORMVOLUME_SPANS * bricks, 2, 2),
-      cl::NDRange(group, 1, 1));
+    this->Launcher.LaunchAndReport(request, kernel,
+      cl::NDRange(group * DEFORMVOLUME_SPANS * bricks, 2, 2), cl::NDRange(group, 1, 1));
     return;
   }
   if (IsByColumns(form))
   {
     const std::size_t group = this->Deferred.GetGroup(kernel);
-    this->Launched.Launch(kernel, cl::NDRange(this->Deferred.GetItems(group)), cl::NDRange(group));
+    this->Launcher.Launch(kernel, cl::NDRange(this->Deferred.GetItems(group)), cl::NDRange(group));
     return;
   }
-  const std::size_t group = this->Device.GetBusyGroupSize(kernel);
+  const std::size_t group = this->Device.GetHeavyGroupSize(kernel);
   constexpr std::size_t cuboids = DEFORMVOLUME_BRICK_X / DEFORMVOLUME_CUBOID_X;
-  this->Launched.Run(request, kernel,
+  this->Launcher.LaunchAndReport(request, kernel,
     cl::NDRange(group * cuboids * bricks, DEFORMVOLUME_BRICK_Y / DEFORMVOLUME_CUBOID_Y,
       DEFORMVOLUME_BRICK_Z / DEFORMVOLUME_CUBOID_Z),
     cl::NDRange(group, 1, 1));
@@ -349,23 +349,23 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
 {
   output.GetLargeCells().Clear();
   std::vector<cl_uint> all;
-  const std::vector<PlannedLaunch> launches =
+  const std::vector<PlannedLaunch> launcher =
     bricks ? this->PlanSome(output, pass, *bricks) : this->PlanAll(output, pass, all);
-  if (launches.empty())
+  if (launcher.empty())
   {
     return;
   }
   const std::vector<cl_uint>& list = bricks ? *bricks : all;
-  const ResamplingForm form = this->ChooseForm(request, output, pass);
+  const ResamplingKernel form = this->ChooseKernel(request, output, pass);
   cl::Kernel kernel = this->MakeKernel(request, form, output, pass);
   this->SendBricks(list);
-  if (form == ResamplingForm::Columns)
+  if (form == ResamplingKernel::Columns)
   {
-    this->RunColumns(request, output, kernel, launches);
+    this->RunColumns(request, output, kernel, launcher);
     return;
   }
-  this->PrepareKernel(kernel, launches.front().Chunk, output, form, launches.front().Parameters);
-  for (const auto& [chunk, p] : launches)
+  this->PrepareKernel(kernel, launcher.front().Chunk, output, form, launcher.front().Parameters);
+  for (const auto& [chunk, p] : launcher)
   {
     this->SetArguments(kernel, chunk, output, form, p);
     this->Launch(request, kernel, form, p);
@@ -373,29 +373,29 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
 }
 
 void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& output,
-  cl::Kernel& columns, const std::vector<PlannedLaunch>& launches)
+  cl::Kernel& columns, const std::vector<PlannedLaunch>& launcher)
 {
   const auto most = static_cast<int>(this->Deferred.GetMostBricks());
   int used = 0;
-  for (const PlannedLaunch& launch : launches)
+  for (const PlannedLaunch& launch : launcher)
   {
     used = std::max(used, launch.Parameters.ListEnd - launch.Parameters.ListBegin);
   }
   this->Deferred.Reserve(static_cast<std::uint64_t>(used));
-  const PlannedLaunch& first = launches.front();
+  const PlannedLaunch& first = launcher.front();
   const int pass = first.Parameters.Pass;
-  std::array<std::pair<ResamplingForm, cl::Kernel>, 3> kernels{ {
-    { ResamplingForm::Columns, columns },
-    { ResamplingForm::DeferredInt32,
-      this->MakeKernel(request, ResamplingForm::DeferredInt32, output, pass) },
-    { ResamplingForm::DeferredInt64,
-      this->MakeKernel(request, ResamplingForm::DeferredInt64, output, pass) },
+  std::array<std::pair<ResamplingKernel, cl::Kernel>, 3> kernels{ {
+    { ResamplingKernel::Columns, columns },
+    { ResamplingKernel::DeferredInt32,
+      this->MakeKernel(request, ResamplingKernel::DeferredInt32, output, pass) },
+    { ResamplingKernel::DeferredInt64,
+      this->MakeKernel(request, ResamplingKernel::DeferredInt64, output, pass) },
   } };
   for (auto& [form, kernel] : kernels)
   {
     this->PrepareKernel(kernel, first.Chunk, output, form, first.Parameters);
   }
-  for (const auto& [chunk, planned] : launches)
+  for (const auto& [chunk, planned] : launcher)
   {
     KernelParameters p = planned;
     for (p.ListEnd = p.ListBegin; p.ListEnd < planned.ListEnd; p.ListBegin = p.ListEnd)
@@ -425,24 +425,24 @@ void ExactPasses::RunLargeCells(const DeformRequest& request, const OutputSlab& 
   {
     numberOfPieces += static_cast<std::uint64_t>(cell.Pieces);
   }
-  this->Launched.Expect(numberOfPieces / DEFORMVOLUME_PIECES + 1);
-  cl::Kernel kernel = this->MakeKernel(request, ResamplingForm::LargeCells, output, pass);
-  const std::size_t group = this->Device.GetBusyGroupSize(kernel);
+  this->Launcher.Expect(numberOfPieces / DEFORMVOLUME_PIECES + 1);
+  cl::Kernel kernel = this->MakeKernel(request, ResamplingKernel::LargeCells, output, pass);
+  const std::size_t group = this->Device.GetHeavyGroupSize(kernel);
   Reserve(this->Device.GetContext(), this->Pieces, DEFORMVOLUME_PIECES * sizeof(Piece));
   for (const VolumeChunk& chunk : this->Volume.GetChunks())
   {
     KernelParameters p = this->Volume.GetParameters(chunk);
     p.Pass = pass;
     output.SetParameters(p);
-    this->PrepareKernel(kernel, chunk, output, ResamplingForm::LargeCells, p);
+    this->PrepareKernel(kernel, chunk, output, ResamplingKernel::LargeCells, p);
     const auto launch = [&]
     {
       this->Device.GetQueue().enqueueWriteBuffer(
         this->Pieces, CL_TRUE, 0, pieces.size() * sizeof(Piece), pieces.data());
       p.ListEnd = static_cast<int>(pieces.size());
-      this->SetArguments(kernel, chunk, output, ResamplingForm::LargeCells, p);
-      this->Launched.Run(request, kernel, cl::NDRange((pieces.size() + group - 1) / group * group),
-        cl::NDRange(group));
+      this->SetArguments(kernel, chunk, output, ResamplingKernel::LargeCells, p);
+      this->Launcher.LaunchAndReport(request, kernel,
+        cl::NDRange((pieces.size() + group - 1) / group * group), cl::NDRange(group));
       pieces.clear();
     };
     for (const auto& [cell, count] : cells)

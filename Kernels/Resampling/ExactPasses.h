@@ -17,7 +17,7 @@ namespace deformvolume
 
 class DeviceVolume;
 class DisplacementSource;
-class Launches;
+class KernelLauncher;
 class OutputSlab;
 class WorkDevice;
 struct VolumeChunk;
@@ -27,12 +27,12 @@ struct VolumeChunk;
 class ExactPasses
 {
 public:
-  ExactPasses(
-    WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source, Launches& launches);
+  ExactPasses(WorkDevice& device, DeviceVolume& volume, const DisplacementSource& source,
+    KernelLauncher& launcher);
 
   /// Chooses the kernel for cells: Cells, Lanes or Columns. Throws an Error if the requested method
   /// cannot be used.
-  ResamplingForm ChooseForm(
+  ResamplingKernel ChooseKernel(
     const DeformRequest& request, const OutputSlab& output, int pass = DEFORMVOLUME_PASS_DIRECT);
 
   /// Runs a pass (such as DEFORMVOLUME_PASS_DIRECT). bricks: the bricks to resample
@@ -69,26 +69,26 @@ private:
   int GetLayersPerLaunch() const;
 
   /// Launches a kernel of a form over the bricks of the list that the parameters select.
-  void Launch(const DeformRequest& request, cl::Kernel& kernel, ResamplingForm form,
+  void Launch(const DeformRequest& request, cl::Kernel& kernel, ResamplingKernel form,
     const KernelParameters& p);
   /// Launches the kernel for columns, each time followed by the kernels for deferred cells.
   void RunColumns(const DeformRequest& request, const OutputSlab& output, cl::Kernel& columns,
-    const std::vector<PlannedLaunch>& launches);
+    const std::vector<PlannedLaunch>& launcher);
   /// Returns the size of a work-group of the kernel for columns.
   std::size_t GetColumnGroup(const cl::Kernel& kernel);
 
   cl::Kernel MakeKernel(
-    const DeformRequest& request, ResamplingForm form, const OutputSlab& output, int pass);
+    const DeformRequest& request, ResamplingKernel form, const OutputSlab& output, int pass);
   /// Compiles a kernel before it runs (OpenCLContext::Prepare).
   void PrepareKernel(cl::Kernel& kernel, const VolumeChunk& chunk, const OutputSlab& output,
-    ResamplingForm form, const KernelParameters& parameters);
+    ResamplingKernel form, const KernelParameters& parameters);
   void SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk, const OutputSlab& output,
-    ResamplingForm form, const KernelParameters& p);
+    ResamplingKernel form, const KernelParameters& p);
 
   WorkDevice& Device;
   DeviceVolume& Volume;
   const DisplacementSource& Source;
-  Launches& Launched;
+  KernelLauncher& Launcher;
   cl::Buffer Bricks;               // the list of bricks to resample
   std::vector<cl_uint> SentBricks; // the content of Bricks
   cl::Buffer BrickRows;            // rows of vertices, if local memory is too small

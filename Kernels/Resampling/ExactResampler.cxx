@@ -13,9 +13,9 @@ ExactResampler::ExactResampler(
   : Budget(budget)
   , Volume(volume)
   , Source(source)
-  , Launched(device)
-  , Exact(device, volume, source, this->Launched)
-  , Boundary(device, budget, volume, source, this->Launched)
+  , Launcher(device)
+  , Exact(device, volume, source, this->Launcher)
+  , Boundary(device, budget, volume, source, this->Launcher)
 {
 }
 
@@ -35,11 +35,12 @@ void ExactResampler::Make(
   const DeformRequest& request, const SlabPlan& plan, std::size_t slab, DeformReport& report)
 {
   OutputSlab& target = this->Targets[plan.GetTarget(slab)];
-  this->Launched.Expect((plan.Slabs.size() - slab) *
+  this->Launcher.Expect((plan.Slabs.size() - slab) *
     (this->Exact.GetNumberOfLaunches() + this->Boundary.GetNumberOfLaunches()));
-  target.Bind(this->Launched, plan.Slabs[slab], request, this->Volume.GetArrays().Get(),
+  target.Bind(this->Launcher, plan.Slabs[slab], request, this->Volume.GetArrays().Get(),
     this->Volume.GetVoxelGrid(), this->Volume.GetBricks().GetNumberOfBricks());
-  target.Clear(this->Launched, this->Exact.ChooseForm(request, target) == ResamplingForm::Columns);
+  target.Clear(
+    this->Launcher, this->Exact.ChooseKernel(request, target) == ResamplingKernel::Columns);
   this->MakeExact(request, target, slab == 0, report);
 }
 
@@ -59,11 +60,11 @@ ExactResampler::Outcome ExactResampler::RunFirstPass(
   Outcome outcome;
   const auto count = [&]
   {
-    outcome.Counts = output.ReadCounts(this->Launched, true);
+    outcome.Counts = output.ReadCounts(this->Launcher, true);
     outcome.Covered =
-      output.HasCoverageBits() ? outcome.Counts.Covered : output.CountCovered(this->Launched);
+      output.HasCoverageBits() ? outcome.Counts.Covered : output.CountCovered(this->Launcher);
   };
-  this->Launched.AddMapping(this->Source.PrepareMapping());
+  this->Launcher.AddMapping(this->Source.PrepareMapping());
   this->RunPass(request, output, pass, false);
   count();
   outcome.HasLargeCells = outcome.Counts.HasLarge;
@@ -91,7 +92,7 @@ void ExactResampler::MakeExact(
     this->WasContested && this->Budget.HasRoomFor(output.GetWinners().GetMissingMemory());
   if (expected)
   {
-    output.GetWinners().Prepare(this->Launched);
+    output.GetWinners().Prepare(this->Launcher);
   }
   const Outcome first = this->RunFirstPass(
     request, output, expected ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT);
@@ -113,14 +114,14 @@ void ExactResampler::MakeExact(
       this->Last =
         claimed && first.Counts.Overstretched == 0 ? LastOutput::Won : LastOutput::Unknown;
     }
-    covered = output.CountCovered(this->Launched);
+    covered = output.CountCovered(this->Launcher);
   }
   this->Boundary.Run(request, output);
   if (request.FoldCounts && first.Counts.Writes > first.Covered)
   {
     this->CountFolds(request, output);
   }
-  output.Complete(this->Launched, false);
+  output.FillUncoveredVoxels(this->Launcher, false);
   report.NumberOfCoveredVoxels +=
     static_cast<std::int64_t>(covered + this->Boundary.GetNumberOfCovered());
   if (isFirst)
@@ -135,21 +136,21 @@ bool ExactResampler::ChooseWinners(
   const DeformRequest& request, OutputSlab& output, const Outcome& first, bool claimed)
 {
   const bool contested = first.Counts.Writes > first.Covered;
-  this->Launched.ExpectMore((contested && !claimed ? 3 : 2) * this->Exact.GetNumberOfLaunches());
+  this->Launcher.ExpectMore((contested && !claimed ? 3 : 2) * this->Exact.GetNumberOfLaunches());
   if (!claimed)
   {
     this->Budget.CheckRoomFor(output.GetWinners().GetMissingMemory(),
       "on the device for a deformation that folds the volume over");
-    output.GetWinners().Prepare(this->Launched);
+    output.GetWinners().Prepare(this->Launcher);
     if (contested)
     {
-      output.GetCounters().Clear(this->Launched);
+      output.GetCounters().Clear(this->Launcher);
       this->RunPass(request, output, DEFORMVOLUME_PASS_OWNERS, first.HasLargeCells);
       claimed = true;
     }
   }
-  output.Settle(
-    this->Launched, claimed, this->Volume.GetParameters(this->Volume.GetChunks().front()));
+  output.FindUnsettledVoxels(
+    this->Launcher, claimed, this->Volume.GetParameters(this->Volume.GetChunks().front()));
   this->WriteWinners(request, output, first.HasLargeCells, claimed);
   return claimed;
 }
@@ -163,7 +164,7 @@ void ExactResampler::WriteWinners(
     std::vector<cl_uint> bricks;
     if (!all)
     {
-      bricks = output.GetCounters().FindBricks(this->Launched, counter);
+      bricks = output.GetCounters().FindBricks(this->Launcher, counter);
     }
     this->RunPass(request, output, pass, hasLargeCells, all ? nullptr : &bricks);
   };
@@ -173,9 +174,9 @@ void ExactResampler::WriteWinners(
 
 void ExactResampler::CountFolds(const DeformRequest& request, OutputSlab& output)
 {
-  output.GetWinners().PrepareCounts(this->Launched);
+  output.GetWinners().PrepareCounts(this->Launcher);
   this->RunPass(request, output, DEFORMVOLUME_PASS_COUNT, true);
-  const std::vector<std::uint32_t> counts = output.GetWinners().ReadCounts(this->Launched);
+  const std::vector<std::uint32_t> counts = output.GetWinners().ReadCounts(this->Launcher);
   const Extent& slab = output.GetExtent();
   const Extent& all = request.OutputExtent;
   const auto width = static_cast<std::size_t>(GetSize(slab, 0));
@@ -194,7 +195,7 @@ void ExactResampler::CountFolds(const DeformRequest& request, OutputSlab& output
 
 std::uint64_t ExactResampler::CountCovered(const std::vector<std::uint32_t>& patches)
 {
-  return this->Targets[0].CountCovered(this->Launched, patches);
+  return this->Targets[0].CountCovered(this->Launcher, patches);
 }
 
 void ExactResampler::Finish() noexcept
@@ -208,7 +209,7 @@ void ExactResampler::Finish() noexcept
 bool ExactResampler::HoldsLastOutput(const DeformRequest& request)
 {
   return this->CanUpdateOutput() &&
-    this->Targets[0].HoldsLastOutput(this->Launched.GetContext(), request);
+    this->Targets[0].HoldsLastOutput(this->Launcher.GetContext(), request);
 }
 
 std::optional<ExactResampler::UpdatedOutput> ExactResampler::UpdateOutput(
@@ -220,16 +221,16 @@ std::optional<ExactResampler::UpdatedOutput> ExactResampler::UpdateOutput(
   const int pass = won ? DEFORMVOLUME_PASS_OWNERS : DEFORMVOLUME_PASS_DIRECT;
   const cl::Buffer list = bricks.empty() ? cl::Buffer() : this->Exact.SendBricks(bricks);
   output.PrepareUpdate(
-    this->Launched, request, this->Volume.GetArrays().Get(), { bricks, list, patches, won });
-  this->Launched.AddMapping(this->Source.PrepareMapping(&bricks));
+    this->Launcher, request, this->Volume.GetArrays().Get(), { bricks, list, patches, won });
+  this->Launcher.AddMapping(this->Source.PrepareMapping(&bricks));
   this->RunPass(request, output, pass, false, &bricks);
   UpdatedOutput updated;
-  updated.Counts = output.ReadCounts(this->Launched, false);
+  updated.Counts = output.ReadCounts(this->Launcher, false);
   const bool hasLargeCells = updated.Counts.HasLarge;
   if (hasLargeCells)
   {
     this->Exact.RunLargeCells(request, output, pass);
-    updated.Counts = output.ReadCounts(this->Launched, false);
+    updated.Counts = output.ReadCounts(this->Launcher, false);
   }
   const auto complete = [&]
   {
@@ -237,8 +238,8 @@ std::optional<ExactResampler::UpdatedOutput> ExactResampler::UpdateOutput(
     {
       this->Boundary.Run(request, output, &patches);
     }
-    output.Complete(this->Launched, true);
-    this->Launched.GetQueue().finish(); // the output is read in another queue
+    output.FillUncoveredVoxels(this->Launcher, true);
+    this->Launcher.GetQueue().finish(); // the output is read in another queue
   };
   if (!won)
   {
@@ -247,10 +248,10 @@ std::optional<ExactResampler::UpdatedOutput> ExactResampler::UpdateOutput(
   }
   if (!bricks.empty())
   {
-    output.Settle(
-      this->Launched, true, this->Volume.GetParameters(this->Volume.GetChunks().front()));
+    output.FindUnsettledVoxels(
+      this->Launcher, true, this->Volume.GetParameters(this->Volume.GetChunks().front()));
   }
-  updated.Overlapping = output.GetWinners().HasContested(this->Launched);
+  updated.Overlapping = output.GetWinners().HasContested(this->Launcher);
   if (updated.Counts.Overstretched > 0 ||
     !(updated.Overlapping || updated.Counts.Inverted > 0 || updated.Counts.MissingWhereAssumed))
   {

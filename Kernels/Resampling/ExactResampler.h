@@ -4,7 +4,7 @@
 
 #include "BoundaryCells.h"
 #include "ExactPasses.h"
-#include "Launches.h"
+#include "KernelLauncher.h"
 #include "OutputSlab.h"
 #include "SlabResampler.h"
 
@@ -32,9 +32,9 @@ public:
     WorkDevice& device, MemoryBudget& budget, DeviceVolume& volume, DisplacementSource& source);
 
   /// Resets the launches for a new deformation.
-  void Start() { this->Launched.Start(); }
+  void Start() { this->Launcher.Start(); }
   /// Adds the times of all launches since Start().
-  void AddTimes(DeformReport& report) { this->Launched.AddTimes(report); }
+  void AddTimes(DeformReport& report) { this->Launcher.AddTimes(report); }
 
   void Begin(const DeformRequest& request, const SlabPlan& plan, DeformReport& report) override;
   void Make(const DeformRequest& request, const SlabPlan& plan, std::size_t slab,
@@ -102,7 +102,7 @@ private:
   MemoryBudget& Budget;
   DeviceVolume& Volume;
   DisplacementSource& Source;
-  Launches Launched;
+  KernelLauncher Launcher;
   ExactPasses Exact;
   BoundaryCells Boundary;
   std::array<OutputSlab, 2> Targets;

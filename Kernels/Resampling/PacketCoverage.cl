@@ -127,10 +127,10 @@ static uint FindDividedLanes(
     {
       continue;
     }
-    int all = DEFORMVOLUME_VERTEX_TOGETHER;
+    int all = DEFORMVOLUME_VERTEX_UNSPLIT;
     for (int o = 0; o < 8; ++o)
     {
-      all &= mesh->State[VertexInChunk(cell + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p)];
+      all &= mesh->State[VertexInChunk(cell + OFFSET_X(o), y + OFFSET_Y(o), z + OFFSET_Z(o), p)];
     }
     const int crossed =
       !(mesh->State[VertexInChunk(cell, y, z, p)] & DEFORMVOLUME_CELL_UNCROSSED);
@@ -153,7 +153,7 @@ static COLD uint FindDivided(
   const long plane = row * p->Size[1];
   const INTS here = LoadStates(state);
   const INTS all = here & LoadStates(state + row) & LoadStates(state + plane) & LoadStates(state + plane + row);
-  const INTS together = (INTS)(DEFORMVOLUME_VERTEX_TOGETHER * 257); // both vertices of a row
+  const INTS together = (INTS)(DEFORMVOLUME_VERTEX_UNSPLIT * 257); // both vertices of a row
   return LaneBits(((here & DEFORMVOLUME_CELL_UNCROSSED) == 0) & ((all & together) != together));
 }
 #endif

@@ -456,7 +456,7 @@ static int ClippedVertices(const SamplingMesh* mesh, Cell* cell, const KernelPar
   {
     const int o = v ^ mirror;
     const size_t i =
-      VertexInChunk(cell->X + (o & 1), cell->Y + (o >> 2), cell->Z + (o >> 1 & 1), p);
+      VertexInChunk(cell->X + OFFSET_X(o), cell->Y + OFFSET_Y(o), cell->Z + OFFSET_Z(o), p);
     cell->Distances[v] = mesh->Distances[i];
     clipped |= (cell->Distances[v] < 0.0f) << v;
   }

@@ -132,7 +132,7 @@ static void BeginSamples(
   for (int k = 0; k < 4; ++k)
   {
     const int o = Tetrahedra[t][k] ^ mirror;
-    s->Sources[k] = VertexInChunk(x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+    s->Sources[k] = VertexInChunk(x + OFFSET_X(o), y + OFFSET_Y(o), z + OFFSET_Z(o), p);
 #if CUBIC
     s->Corners[k] = o;
 #endif

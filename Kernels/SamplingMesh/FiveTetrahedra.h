@@ -2,8 +2,8 @@
 // The split of a cell of the sampling mesh into five tetrahedra (5T). This file is valid C++ and
 // OpenCL C; it precedes the text of every kernel, so both languages share one table.
 //
-// Vertex v of the cell at (x, y, z) lies at x + (v & 1), y + (v >> 2 & 1), z + (v >> 1 & 1), so v
-// is one less than the number used in the literature. The split is mirrored from cell to cell: on
+// Vertex v of the cell at (x, y, z) has the offset DEFORMVOLUME_OFFSET_X(v), ..._Y(v), ..._Z(v), so
+// v is one less than the number used in the literature. The split is mirrored from cell to cell: on
 // every axis on which the structured index of the cell is odd, offsets are counted from the upper
 // side of the cell. Therefore two neighboring cells have the same diagonal on their common face.
 //
@@ -28,8 +28,21 @@
 // order of the bits of a vertex number: v ^ mirror is the offset of vertex v.
 #define DEFORMVOLUME_MIRROR(x, y, z) (((x)&1) | ((z)&1) << 1 | ((y)&1) << 2)
 
+// The offset of a vertex of a cell on each axis, 0 or 1.
+#define DEFORMVOLUME_OFFSET_X(v) ((v)&1)
+#define DEFORMVOLUME_OFFSET_Y(v) ((v) >> 2 & 1)
+#define DEFORMVOLUME_OFFSET_Z(v) ((v) >> 1 & 1)
+
 #ifdef __OPENCL_VERSION__
+#define OFFSET_X DEFORMVOLUME_OFFSET_X
+#define OFFSET_Y DEFORMVOLUME_OFFSET_Y
+#define OFFSET_Z DEFORMVOLUME_OFFSET_Z
 __constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+#else
+namespace deformvolume
+{
+inline constexpr int FiveTetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
+}
 #endif
 
 // The byte of a cell in a mask of active tetrahedra if all five are active.

@@ -120,8 +120,8 @@ typedef struct
 #define DEFORMVOLUME_PASS_MARK 2
 #define DEFORMVOLUME_PASS_WINNER 3 // write the voxels of which this tetrahedron is the winner
 #define DEFORMVOLUME_PASS_COUNT 4  // count the tetrahedra that write each voxel; write nothing
-// Whether the pass uses closed tetrahedra: all that contain a voxel, including their boundaries, and
-// not only the one that owns it by the fill rule.
+// Whether the pass uses closed tetrahedra: all that contain a voxel, including their boundaries,
+// and not only the one that owns it by the fill rule.
 #define DEFORMVOLUME_USES_CLOSED_TETRAHEDRA(pass)                                                  \
   ((pass) == DEFORMVOLUME_PASS_MARK || (pass) == DEFORMVOLUME_PASS_WINNER)
 // Whether the pass writes values.
@@ -218,7 +218,7 @@ typedef struct
 #define DEFORMVOLUME_VERTEX_REGULAR 8 // as INTERIOR, but may lie on the border of the volume
 #define DEFORMVOLUME_VERTEX_UNCLIPPED 16 // a source with a boundary distance that is not negative
 #define DEFORMVOLUME_CELL_UNCROSSED 32   // no smooth cut crosses the cell that begins at the vertex
-#define DEFORMVOLUME_VERTEX_TOGETHER 64  // its copies on both sides of the cut coincide with it
+#define DEFORMVOLUME_VERTEX_UNSPLIT 64   // its copies on both sides of the cut coincide with it
 
 // Further bits in the mask of active tetrahedra, for the boundary of the deformation mesh.
 #define DEFORMVOLUME_CELL_AT_BOUNDARY 32 // the boundary crosses the cell or a neighbor of it

@@ -13,8 +13,6 @@ namespace deformvolume
 namespace
 {
 
-constexpr Extent NoBox{ { 0, -1, 0, -1, 0, -1 } };
-
 std::size_t CountCuboids(int size, int cuboid)
 {
   return static_cast<std::size_t>((size + cuboid - 1) / cuboid);
@@ -49,7 +47,7 @@ class CuboidRow
 public:
   CuboidRow(const std::array<int, 3>& size, std::size_t number)
     : Size(size)
-    , Boxes(CountCuboids(size[0], DEFORMVOLUME_CUBOID_X), NoBox)
+    , Boxes(CountCuboids(size[0], DEFORMVOLUME_CUBOID_X), EmptyExtent)
   {
     const std::size_t rows = CountCuboids(size[1], DEFORMVOLUME_CUBOID_Y);
     this->Y = static_cast<int>(number % rows) * DEFORMVOLUME_CUBOID_Y;

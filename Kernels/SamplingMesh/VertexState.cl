@@ -228,7 +228,7 @@ static void MarkRow(__global const uchar* state, __global const uchar* active, _
     int bits = SourceBits(state, x, y, z, p);
     if (bits)
     {
-      bits |= DEFORMVOLUME_VERTEX_TOGETHER; // CutPositions.cl clears the bit if a copy lies elsewhere
+      bits |= DEFORMVOLUME_VERTEX_UNSPLIT; // CutPositions.cl clears the bit if a copy lies elsewhere
       if (((before & here & after & ALL_SOURCES) && (before & here & ALL_ACTIVE)) ||
         (p->HasActive && IsBesideCrossed(active, x, y, z, p) && IsSurrounded(state, active, x, y, z, p)))
       {

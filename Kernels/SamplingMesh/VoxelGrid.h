@@ -62,13 +62,13 @@ struct OutputMap
 struct VoxelGrid
 {
   /// Structured indices of the voxels. Their parity decides the 5T split.
-  Extent VertexExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent VertexExtent = EmptyExtent;
   /// Map to indices of the output. Default: the identity.
   OutputMap ToOutput;
   /// Extent of the whole volume, if the voxels are a part of it. Default: empty, which means that
   /// the voxels are the whole volume. The displacements of a part are bitwise equal to those of the
   /// whole.
-  Extent WholeExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent WholeExtent = EmptyExtent;
 };
 
 /// Returns the extent of the whole volume: WholeExtent, or VertexExtent if that is empty.

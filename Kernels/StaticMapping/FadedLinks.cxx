@@ -197,7 +197,7 @@ void FadedLinks::FindBlocks(
   {
     std::vector<Block> Blocks;
     std::vector<std::int32_t> Faces;
-    Extent Still{ { 0, -1, 0, -1, 0, -1 } };
+    Extent Still = EmptyExtent;
   };
   const auto count = [&](int axis)
   { return static_cast<int>((GetSize(voxels, axis) + BlockSize - 1) / BlockSize); };
@@ -205,7 +205,7 @@ void FadedLinks::FindBlocks(
   const auto findBlock = [&](const std::array<int, 3>& index, Layer& layer)
   {
     Block block;
-    block.Voxels = Extent{ { 0, -1, 0, -1, 0, -1 } };
+    block.Voxels = EmptyExtent;
     block.GreatestWeight = 0.0;
     const std::size_t first = layer.Faces.size();
     std::int32_t last = -1;

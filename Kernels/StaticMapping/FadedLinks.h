@@ -99,7 +99,7 @@ private:
   std::vector<TetrahedronFace> Faces;
   std::vector<Block> Blocks;
   std::vector<std::int32_t> FacesOfBlocks;
-  Extent StillVoxels{ { 0, -1, 0, -1, 0, -1 } }; // bounding box of the voxels that do not move
+  Extent StillVoxels = EmptyExtent; // bounding box of the voxels that do not move
   StretchedTetrahedra Stretched;
 };
 

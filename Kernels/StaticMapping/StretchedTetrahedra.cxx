@@ -68,7 +68,6 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
   const std::vector<TetrahedronFace>& faces, const std::vector<VertexLink>& links)
 {
   this->Stretchable.clear();
-  static constexpr int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
   const auto still = static_cast<std::int32_t>(tetrahedra.size());
   const std::int64_t size = GetSize(voxels, 0);
   const std::int64_t plane = size * GetSize(voxels, 1);
@@ -136,7 +135,7 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
                 restPoints, tetrahedra, faces);
             }
             const int mirror = DEFORMVOLUME_MIRROR(voxels[0] + x, voxels[2] + y, voxels[4] + z);
-            for (const auto& tetrahedron : split)
+            for (const auto& tetrahedron : FiveTetrahedra)
             {
               int vertices[4];
               for (int k = 0; k < 4; ++k)

@@ -27,10 +27,10 @@ public:
   /// The displacements of each record as an affine function (TetrahedronRecord). Valid if
   /// AreCurrent().
   const cl::Buffer& Get() const { return this->Records; }
-  /// Whether Evaluate() has been called since the last Set(), Clear() or Forget(). Call Forget()
-  /// after nodes have moved.
+  /// Whether Evaluate() has been called since the last Set(), Clear() or Invalidate(). Call
+  /// Invalidate() after nodes have moved.
   bool AreCurrent() const { return this->Current; }
-  void Forget() { this->Current = false; }
+  void Invalidate() { this->Current = false; }
   cl::Event Evaluate(
     const cl::Program& mapping, const cl::Buffer& tetrahedra, const cl::Buffer& nodes);
 

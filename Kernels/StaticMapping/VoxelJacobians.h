@@ -44,7 +44,7 @@ private:
   void ComputeOutside(const OutputMap& toOutput, const std::vector<Tetrahedron>& tetrahedra,
     const float* displacements, float* jacobians) const;
 
-  Extent Voxels{ { 0, -1, 0, -1, 0, -1 } };
+  Extent Voxels = EmptyExtent;
   std::vector<std::int32_t> Owners; // the tetrahedron of each voxel; negative: none
   // Used if voxels outside the mesh are kept:
   std::vector<VertexLink> Links;

@@ -140,7 +140,7 @@ void CheckReferenceIndices(const VoxelGrid& voxelGrid, const ImageGeometry& refe
   for (int axis = 0; axis < 3; ++axis)
   {
     const double farthest = std::max(std::abs(bounds.Min[axis]), std::abs(bounds.Max[axis]));
-    if (!(farthest <= MostOutputIndex))
+    if (!(farthest <= MaxOutputIndex))
     {
       std::ostringstream text;
       text << "The volume at rest has the index " << farthest

@@ -43,7 +43,7 @@ DEFORMVOLUME_EXPORT Extent GetStableExtent(
 /// result has more than MostOutputVoxels voxels.
 DEFORMVOLUME_EXPORT Extent GetPadded(const Extent& extent, int padding);
 
-/// Throws an Error if the volume at rest has indices beyond MostOutputIndex in the grid of the
+/// Throws an Error if the volume at rest has indices beyond MaxOutputIndex in the grid of the
 /// reference image. voxelGrid: the grid of the volume, with its transform to the grid of the
 /// reference image.
 DEFORMVOLUME_EXPORT void CheckReferenceIndices(

@@ -4,8 +4,8 @@
 
 #include "DeviceVectors.h"
 #include "DisplacementField.h"
+#include "FieldChecker.h"
 #include "FieldPointMap.h"
-#include "FieldScan.h"
 #include "ImageGeometry.h"
 #include "IndexBounds.h"
 #include "OutsideVoxels.h"
@@ -84,7 +84,7 @@ private:
   std::uint64_t Revision = 0; // the revision of Shared in this version
   std::shared_ptr<DeviceVectors> InPlace;
   std::array<double, 9> ToDisplacement{}; // of InPlace
-  FieldScan Scan;
+  FieldChecker Scan;
   std::uint64_t ScannedRevision = 0; // 0: the last scan was for another volume or output
 };
 

@@ -392,25 +392,25 @@ void BuildOthers(Recorder& recorder)
 {
   recorder.SetPurpose("links-int16-wide");
   OpenCLContext& context = OpenCLContext::Get(FindDevice(""));
-  for (const ResamplingForm form : { ResamplingForm::Columns, ResamplingForm::DeferredInt64,
-         ResamplingForm::Cells, ResamplingForm::LargeCells })
+  for (const ResamplingKernel form : { ResamplingKernel::Columns, ResamplingKernel::DeferredInt64,
+         ResamplingKernel::Cells, ResamplingKernel::LargeCells })
   {
-    const bool bits = form != ResamplingForm::Cells;
-    GetResamplingProgram(context, MappingForm::Links, OneArray, { form, true, bits, false });
+    const bool bits = form != ResamplingKernel::Cells;
+    GetResamplingProgram(context, MappingKind::Links, OneArray, { form, true, bits, false });
   }
   for (const bool withCut : { false, true })
   {
     recorder.SetPurpose(withCut ? "links-int16-cut" : "links-int16");
-    GetResamplingProgram(
-      context, MappingForm::Links, OneArray, { ResamplingForm::LargeCells, false, true, withCut });
+    GetResamplingProgram(context, MappingKind::Links, OneArray,
+      { ResamplingKernel::LargeCells, false, true, withCut });
     // Programs for outputs that the kernel by columns does not support.
     GetResamplingProgram(
-      context, MappingForm::Links, OneArray, { ResamplingForm::Cells, false, false, withCut });
+      context, MappingKind::Links, OneArray, { ResamplingKernel::Cells, false, false, withCut });
     recorder.SetPurpose(withCut ? "links-int16-cubic-cut" : "links-int16-cubic");
-    for (const ResamplingForm form : { ResamplingForm::Cells, ResamplingForm::LargeCells })
+    for (const ResamplingKernel form : { ResamplingKernel::Cells, ResamplingKernel::LargeCells })
     {
       GetResamplingProgram(
-        context, MappingForm::Links, OneArray, { form, false, false, withCut, false, true });
+        context, MappingKind::Links, OneArray, { form, false, false, withCut, false, true });
     }
   }
 }

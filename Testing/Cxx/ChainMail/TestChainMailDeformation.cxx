@@ -135,7 +135,7 @@ TEST(ChainMailDeformation, Kept)
   dragged.Update();
   EXPECT_TRUE(dragged.GetArray() == array && array->GetMTime() == time);
   EXPECT_EQ(dragged.Filter->GetNumberOfMovedVoxels(), 0);
-  EXPECT_EQ(getChanges(), (Extent{ { 0, -1, 0, -1, 0, -1 } }));
+  EXPECT_EQ(getChanges(), deformvolume::EmptyExtent);
   // A drag of other voxels: the voxels of the first drag stay displaced.
   const glm::dvec3 other(34, 12, 12);
   found = dragged.Drag({ { other, other + glm::dvec3(0, -1, 0) } });

@@ -10,7 +10,7 @@ using namespace filterTesting;
 namespace
 {
 
-const Extent Nothing{ { 0, -1, 0, -1, 0, -1 } };
+const Extent Nothing = deformvolume::EmptyExtent;
 
 Extent GetChangedExtent(const Deformed& deformed)
 {

@@ -204,13 +204,13 @@ public:
     {
       this->Mesh.SetRuns(this->Case.Runs);
       this->Mesh.GetRecords().Evaluate(
-        GetMappingProgram(this->Context, MappingForm::Runs), tetrahedra, nodes);
+        GetMappingProgram(this->Context, MappingKind::Runs), tetrahedra, nodes);
     }
     else
     {
       this->Mesh.SetLinks(this->Case.Links.data());
     }
-    const MappingForm form = byRuns ? MappingForm::Runs : MappingForm::Links;
+    const MappingKind form = byRuns ? MappingKind::Runs : MappingKind::Links;
     const auto setMapping = [&](cl::Kernel& kernel, const VolumeChunk& chunk)
     {
       kernel.setArg(0, byRuns ? chunk.Runs : chunk.Links);

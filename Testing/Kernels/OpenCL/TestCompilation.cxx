@@ -91,12 +91,12 @@ std::vector<ElementType> GetAllTypes()
   return types;
 }
 
-const ResamplingForm AllForms[] = { ResamplingForm::Cells, ResamplingForm::Lanes,
-  ResamplingForm::Columns, ResamplingForm::DeferredInt64, ResamplingForm::LargeCells };
+const ResamplingKernel AllForms[] = { ResamplingKernel::Cells, ResamplingKernel::Lanes,
+  ResamplingKernel::Columns, ResamplingKernel::DeferredInt64, ResamplingKernel::LargeCells };
 
-bool HasBits(ResamplingForm form)
+bool HasBits(ResamplingKernel form)
 {
-  return form == ResamplingForm::Columns || form == ResamplingForm::DeferredInt64;
+  return form == ResamplingKernel::Columns || form == ResamplingKernel::DeferredInt64;
 }
 
 struct Compiled
@@ -230,14 +230,14 @@ TEST_F(Compilation, NoWarnings)
   const std::vector<VolumeArray> one = MakeArrays({ ElementType::Int16 }, false);
   VoxelGrid voxelGrid;
   voxelGrid.VertexExtent = { { 0, 9, 0, 9, 0, 9 } };
-  for (const MappingForm form : { MappingForm::Links, MappingForm::Runs, MappingForm::Field })
+  for (const MappingKind form : { MappingKind::Links, MappingKind::Runs, MappingKind::Field })
   {
     SCOPED_TRACE(static_cast<int>(form));
     for (const bool withCut : { false, true })
     {
       EXPECT_EQ(GetLog(GetMappingProgram(context, form, withCut)), "");
       EXPECT_EQ(GetLog(GetMappingProgram(context, form, withCut, true)), "");
-      for (const ResamplingForm kernel : { ResamplingForm::Lanes, ResamplingForm::Columns })
+      for (const ResamplingKernel kernel : { ResamplingKernel::Lanes, ResamplingKernel::Columns })
       {
         EXPECT_EQ(GetLog(GetResamplingProgram(
                     context, form, one, { kernel, false, HasBits(kernel), withCut })),
@@ -245,27 +245,27 @@ TEST_F(Compilation, NoWarnings)
       }
     }
   }
-  for (const ResamplingForm kernel : AllForms)
+  for (const ResamplingKernel kernel : AllForms)
   {
     SCOPED_TRACE(static_cast<int>(kernel));
     const bool bits = HasBits(kernel);
     const auto getLog = [&](const std::vector<VolumeArray>& arrays, bool wide, bool withCut)
     {
       return GetLog(
-        GetResamplingProgram(context, MappingForm::Links, arrays, { kernel, wide, bits, withCut }));
+        GetResamplingProgram(context, MappingKind::Links, arrays, { kernel, wide, bits, withCut }));
     };
     EXPECT_EQ(getLog(linear, false, false), "");
     EXPECT_EQ(getLog(linear, true, false), "");
     EXPECT_EQ(getLog(labels, false, false), "");
     EXPECT_EQ(getLog(linear, false, true), "");
   }
-  EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, linear,
-              { ResamplingForm::LargeCells, false, true, false })),
+  EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingKind::Links, linear,
+              { ResamplingKernel::LargeCells, false, true, false })),
     "");
   for (const bool withCut : { false, true })
   {
-    EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingForm::Links, linear,
-                { ResamplingForm::Cells, false, false, withCut, false, true })),
+    EXPECT_EQ(GetLog(GetResamplingProgram(context, MappingKind::Links, linear,
+                { ResamplingKernel::Cells, false, false, withCut, false, true })),
       "");
   }
   EXPECT_EQ(GetLog(GetOutputProgram(context)), "");
@@ -288,15 +288,15 @@ TEST_F(Compilation, KernelsThatAreNotUsedAreNotCompiled)
 {
   OpenCLContext& context = GetContext();
   const std::vector<VolumeArray> arrays = MakeArrays({ ElementType::Int16 }, false);
-  for (const auto& [form, name] : { std::make_pair(ResamplingForm::Cells, "Resample"),
-         std::make_pair(ResamplingForm::Lanes, "ResampleBricks"),
-         std::make_pair(ResamplingForm::Columns,
+  for (const auto& [form, name] : { std::make_pair(ResamplingKernel::Cells, "Resample"),
+         std::make_pair(ResamplingKernel::Lanes, "ResampleBricks"),
+         std::make_pair(ResamplingKernel::Columns,
            "ResampleColumns;ResampleDeferredInt32"), // run one after the other
-         std::make_pair(ResamplingForm::DeferredInt64, "ResampleDeferredInt64"),
-         std::make_pair(ResamplingForm::LargeCells, "ResampleLargeCells") })
+         std::make_pair(ResamplingKernel::DeferredInt64, "ResampleDeferredInt64"),
+         std::make_pair(ResamplingKernel::LargeCells, "ResampleLargeCells") })
   {
     const std::string names = GetResamplingProgram(
-      context, MappingForm::Field, arrays, { form, false, HasBits(form), false })
+      context, MappingKind::Field, arrays, { form, false, HasBits(form), false })
                                 .getInfo<CL_PROGRAM_KERNEL_NAMES>();
     EXPECT_EQ(std::string(names.c_str()), name);
   }

@@ -554,8 +554,8 @@ TEST(DeviceVectors, TinyBoxes)
           }
         }
       }
-      EXPECT_EQ(found[box].Least[axis], least);
-      EXPECT_EQ(found[box].Greatest[axis], greatest);
+      EXPECT_EQ(found[box].Min[axis], least);
+      EXPECT_EQ(found[box].Max[axis], greatest);
     }
   }
 }

@@ -5,7 +5,7 @@
 #include "DeviceVectors.h"
 #include "EditedVolume.h"
 #include "FakeDriver.h"
-#include "VectorReading.h"
+#include "VectorConverter.h"
 
 #include <gtest/gtest.h>
 
@@ -211,7 +211,7 @@ protected:
 
 TEST_F(LargeField, IsConvertedOnTheDevice)
 {
-  ASSERT_GT(Points, VectorReading::PointsOfPortion);
+  ASSERT_GT(Points, VectorConverter::PointsOfPortion);
   FakeDriver::Get().BytesWritten = 0;
   this->Deformer.SetDisplacementField(this->Field);
   EXPECT_LE(FakeDriver::Get().BytesWritten, 12 * Points + Few);
@@ -231,7 +231,7 @@ TEST_F(LargeField, OnlyStatedChangesAreSent)
   this->Request.LastOutputs = { this->Output.data() };
   this->Request.LastCoverage = this->Coverage.data();
   // On both sides of the border between portions, and in the next row.
-  const std::size_t first = VectorReading::PointsOfPortion - 20;
+  const std::size_t first = VectorConverter::PointsOfPortion - 20;
   const PointRanges changes{ { { first + Size + 5, first + Size + 10 } },
     { { first, first + 25 } } };
   DeformReport report;

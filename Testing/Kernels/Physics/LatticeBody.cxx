@@ -16,7 +16,6 @@ LatticeBody::LatticeBody(const Place& nodes, double spacing, const ElasticMateri
   this->Body.Materials = { material };
   this->ForNodes([&](const Place& place, std::int32_t)
     { this->Body.Points.push_back(glm::dvec3(place[0], place[1], place[2]) * spacing); });
-  constexpr std::int32_t table[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
   LatticeBody::Place cell;
   for (cell[2] = 0; cell[2] + 1 < nodes[2]; ++cell[2])
   {
@@ -30,7 +29,7 @@ LatticeBody::LatticeBody(const Place& nodes, double spacing, const ElasticMateri
           Tetrahedron tetrahedron;
           for (std::size_t i = 0; i < 4; ++i)
           {
-            const std::int32_t vertex = table[number][i];
+            const std::int32_t vertex = FiveTetrahedra[number][i];
             const std::int32_t offsets[3] = { vertex & 1, vertex >> 2 & 1, vertex >> 1 & 1 };
             Place place;
             for (std::size_t axis = 0; axis < 3; ++axis)

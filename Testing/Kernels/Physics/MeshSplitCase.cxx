@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshSplitCase.h"
 
-#include "BodyPieces.h"
+#include "BodyComponents.h"
 #include "DisjointSets.h"
 #include "LatticeBody.h"
 
@@ -64,7 +64,7 @@ void ExpectSame(const MeshSplit& a, const MeshSplit& b)
   EXPECT_EQ(a.Origins, b.Origins);
   EXPECT_EQ(a.Changed, b.Changed);
   EXPECT_EQ(a.NumberOfFaces, b.NumberOfFaces);
-  EXPECT_EQ(a.Unparted, b.Unparted);
+  EXPECT_EQ(a.StillConnected, b.StillConnected);
 }
 
 void ExpectNothing(const ElasticBody& body, const MeshSplit& split)

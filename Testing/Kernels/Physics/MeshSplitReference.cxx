@@ -114,7 +114,7 @@ std::optional<MeshSplit> SplitMeshSlowly(const std::vector<glm::dvec3>& position
   const SlowSplit slow{ positions, tetrahedra, points, triangles };
   MeshSplit split;
   split.Tetrahedra = tetrahedra;
-  split.Unparted = unparted;
+  split.StillConnected = unparted;
   std::map<std::size_t, std::vector<std::size_t>>
     joined; // tetrahedra connected by faces that are not split
   std::set<std::int32_t> nodes;
@@ -144,7 +144,7 @@ std::optional<MeshSplit> SplitMeshSlowly(const std::vector<glm::dvec3>& position
         continue;
       }
       nodes.insert(common.begin(), common.end());
-      split.Unparted.push_back(pair);
+      split.StillConnected.push_back(pair);
       ++split.NumberOfFaces;
     }
   }
@@ -189,16 +189,17 @@ std::optional<MeshSplit> SplitMeshSlowly(const std::vector<glm::dvec3>& position
     }
   }
   split.Changed.assign(changed.begin(), changed.end());
-  split.Unparted.erase(std::remove_if(split.Unparted.begin(), split.Unparted.end(),
-                         [&](const TetrahedronPair& pair)
-                         {
-                           return slow
-                                    .GetCommon(static_cast<std::size_t>(pair[0]),
-                                      static_cast<std::size_t>(pair[1]), split.Tetrahedra)
-                                    .size() < 3;
-                         }),
-    split.Unparted.end());
-  std::sort(split.Unparted.begin(), split.Unparted.end());
+  split.StillConnected.erase(
+    std::remove_if(split.StillConnected.begin(), split.StillConnected.end(),
+      [&](const TetrahedronPair& pair)
+      {
+        return slow
+                 .GetCommon(static_cast<std::size_t>(pair[0]), static_cast<std::size_t>(pair[1]),
+                   split.Tetrahedra)
+                 .size() < 3;
+      }),
+    split.StillConnected.end());
+  std::sort(split.StillConnected.begin(), split.StillConnected.end());
   return split;
 }
 

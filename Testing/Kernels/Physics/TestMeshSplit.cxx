@@ -123,7 +123,7 @@ TEST(MeshSplit, TwoTetrahedra)
     EXPECT_EQ(split.Changed, std::vector<std::size_t>{ 1 });
     EXPECT_EQ(split.Tetrahedra[0], body.Tetrahedra[0]);
     EXPECT_EQ(split.Tetrahedra[1], (Tetrahedron{ { 4, 5, 7, 6 } }));
-    EXPECT_TRUE(split.Unparted.empty());
+    EXPECT_TRUE(split.StillConnected.empty());
     const ElasticBody after = Apply(body, split);
     ExpectNothing(
       after, Split(after, MakeSheet({ -2.0, -2.0, height }, { 4.0, 0.0, 0.0 }, { 0.0, 4.0, 0.0 })));
@@ -137,7 +137,7 @@ TEST(MeshSplit, Planes)
   {
     const MeshSplit split = Split(body, sheet);
     ExpectSound(body, split);
-    EXPECT_TRUE(split.Unparted.empty());
+    EXPECT_TRUE(split.StillConnected.empty());
     return ExpectPieces(Apply(body, split), 2);
   };
   // Cuts along faces, with two triangles per cell.
@@ -189,7 +189,7 @@ TEST(MeshSplit, SheetThatEndsInside)
   ExpectPieces(after, 1);
   // The sheet ends at y = 4, along edges of the mesh. The nodes on these edges are not split.
   EXPECT_EQ(split.NumberOfFaces, 64);
-  EXPECT_TRUE(split.Unparted.empty());
+  EXPECT_TRUE(split.StillConnected.empty());
   EXPECT_EQ(split.Origins.size(), 36U);
   for (const std::int32_t origin : split.Origins)
   {
@@ -219,7 +219,7 @@ TEST(MeshSplit, ManyShortCuts)
       const MeshSplit split = Split(body,
         MakeSheet({ 4.0, y, z }, { 0.0, length + 0.01, 0.0 }, { 0.0, 0.0, length + 0.01 }),
         unparted);
-      unparted = split.Unparted;
+      unparted = split.StillConnected;
       most = std::max(most, unparted.size());
       faces += split.NumberOfFaces;
       body = Apply(body, split);

@@ -95,7 +95,7 @@ TEST(MidSideNodes, SplitWithTheirEdges)
   // The second tetrahedron is separated.
   std::vector<MidSideNodes> parted = before;
   const std::vector<std::int32_t> origins =
-    SplitMidSides({ { 0, 1, 2, 3 }, { nodes, nodes + 1, 4, nodes + 2 } }, nodes + 3, parted);
+    SplitMidSideNodes({ { 0, 1, 2, 3 }, { nodes, nodes + 1, 4, nodes + 2 } }, nodes + 3, parted);
   EXPECT_EQ(parted[0], before[0]);
   EXPECT_EQ(origins.size(), 3u);
   for (std::size_t edge = 0; edge < 6; ++edge)
@@ -110,12 +110,13 @@ TEST(MidSideNodes, SplitWithTheirEdges)
 
   // The tetrahedra still share the edge 1 2, like a hinge. This edge keeps one mid-side node.
   std::vector<MidSideNodes> hinged = before;
-  EXPECT_EQ(SplitMidSides({ { 0, 1, 2, 3 }, { 2, 1, 4, nodes } }, nodes + 1, hinged).size(), 2u);
+  EXPECT_EQ(
+    SplitMidSideNodes({ { 0, 1, 2, 3 }, { 2, 1, 4, nodes } }, nodes + 1, hinged).size(), 2u);
   EXPECT_EQ(hinged[1][0], before[1][0]);
 
   // Nothing is split.
   std::vector<MidSideNodes> same = before;
-  EXPECT_TRUE(SplitMidSides(body.Tetrahedra, nodes, same).empty());
+  EXPECT_TRUE(SplitMidSideNodes(body.Tetrahedra, nodes, same).empty());
   EXPECT_EQ(same, before);
 }
 

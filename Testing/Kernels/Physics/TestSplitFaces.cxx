@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cuts of a deformation mesh along its faces: the faces that are split.
-#include "BodyPieces.h"
+#include "BodyComponents.h"
 #include "LatticeBody.h"
 #include "MeshSplitCase.h"
 #include "ParallelFor.h"
 
-#include "BodyPieces.h"
+#include "BodyComponents.h"
 #include <glm/geometric.hpp>
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(SplitFaces, NoPieceOnBothSides)
     ExpectSound(body, split);
     EXPECT_GT(split.NumberOfFaces, 0);
     const ElasticBody after = Apply(body, split);
-    const BodyPieces pieces = FindPieces(after);
+    const BodyComponents pieces = FindPieces(after);
     std::vector<int> sides(static_cast<std::size_t>(pieces.NumberOfPieces), 0);
     for (const Tetrahedron& t : after.Tetrahedra)
     {
@@ -225,8 +225,8 @@ TEST(SplitFaces, RandomSheetsEqualTheReference)
       ExpectSame(split, *expected);
       ++compared;
       copies += static_cast<int>(split.Origins.size());
-      unparted += static_cast<int>(split.Unparted.size());
-      pairs = split.Unparted;
+      unparted += static_cast<int>(split.StillConnected.size());
+      pairs = split.StillConnected;
       body = Apply(body, split);
     }
   }

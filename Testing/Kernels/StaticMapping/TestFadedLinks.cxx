@@ -367,7 +367,6 @@ TEST(FadedLinks, Bounds)
 std::int64_t CountStretched(const Extent& voxels, const StaticMapping& mapping, const Moved& moved,
   std::size_t numberOfTetrahedra)
 {
-  static const int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
   std::int64_t count = 0;
   const std::int64_t width = GetSize(voxels, 0);
   const std::int64_t plane = width * GetSize(voxels, 1);
@@ -377,7 +376,7 @@ std::int64_t CountStretched(const Extent& voxels, const StaticMapping& mapping, 
     {
       for (std::int64_t x = 0; x + 1 < width; ++x)
       {
-        for (const auto& tetrahedron : split)
+        for (const auto& tetrahedron : FiveTetrahedra)
         {
           bool isOutside = false;
           glm::dvec3 low(1e9);

@@ -36,7 +36,6 @@ struct Mesh
 inline Mesh MakeLattice(const glm::ivec3& nodes, const glm::dvec3& min, const glm::dvec3& max,
   double jitter, double unit, std::mt19937& random)
 {
-  static const int split[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
   std::uniform_real_distribution<double> between(-1.0, 1.0);
   Mesh mesh;
   for (int z = 0; z < nodes.z; ++z)
@@ -65,7 +64,7 @@ inline Mesh MakeLattice(const glm::ivec3& nodes, const glm::dvec3& min, const gl
     {
       for (int x = 0; x + 1 < nodes.x; ++x)
       {
-        for (const auto& corners : split)
+        for (const auto& corners : FiveTetrahedra)
         {
           deformvolume::Tetrahedron tetrahedron;
           for (int node = 0; node < 4; ++node)

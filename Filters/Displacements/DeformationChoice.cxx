@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "VectorChoice.h"
+#include "DeformationChoice.h"
 
 #include "Error.h"
 #include "VectorArray.h"
@@ -104,7 +104,7 @@ void FillDeformationPort(bool isRest, vtkInformation* info)
   }
 }
 
-void ThrowRestAlone(int restPort, int deformationPort)
+void ThrowRestWithoutDeformation(int restPort, int deformationPort)
 {
   throw Error("There is a rest configuration on input port " + std::to_string(restPort) +
     ", but no deformation on input port " + std::to_string(deformationPort) +

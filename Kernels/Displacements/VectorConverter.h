@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeVectorReading_h
-#define DeformVolumeVectorReading_h
+#ifndef DeformVolumeVectorConverter_h
+#define DeformVolumeVectorConverter_h
 
 #include "DeviceVectors.h"
 #include "DisplacementField.h"
@@ -20,10 +20,10 @@ namespace deformvolume
 /// Converts vectors to displacements. On a device with memory of its own, a kernel converts them,
 /// so that DeviceVectors are not copied to the host. Otherwise they are converted on the host. The
 /// class keeps the DeviceVectors and their revision of the last call.
-class VectorReading
+class VectorConverter
 {
 public:
-  explicit VectorReading(WorkDevice& device)
+  explicit VectorConverter(WorkDevice& device)
     : Device(device)
   {
   }
@@ -51,7 +51,7 @@ public:
   ///@}
   /// Least number of points for which Convert() of a field is worth it: it takes less time than the
   /// host needs to find the vectors that have changed.
-  static constexpr std::size_t LeastPoints = std::size_t{ 1 } << 20;
+  static constexpr std::size_t MinPoints = std::size_t{ 1 } << 20;
   /// Most points whose vectors are on the device at a time, if they come from host memory.
   static constexpr std::size_t PointsOfPortion = std::size_t{ 1 } << 21;
   /// Bytes on the device.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeFieldScan_h
-#define DeformVolumeFieldScan_h
+#ifndef DeformVolumeFieldChecker_h
+#define DeformVolumeFieldChecker_h
 
 #include "DeformVolumeExport.h"
 #include "DisplacementField.h"
@@ -14,7 +14,7 @@ namespace deformvolume
 {
 
 /// State of the vectors of a displacement field.
-struct FieldState
+struct FieldCheckResult
 {
   /// Whether all vectors are finite, and no displacement exceeds LargestDisplacement.
   bool IsUsable = false;
@@ -28,12 +28,12 @@ DEFORMVOLUME_EXPORT bool AreVoxelsPoints(
 
 /// Checks the vectors of a field in which each voxel is a point, and computes the bounds of the
 /// deformed voxels. Later calls process only vectors that have changed.
-class DEFORMVOLUME_EXPORT FieldScan
+class DEFORMVOLUME_EXPORT FieldChecker
 {
 public:
   /// Checks the vectors. changes: points whose vectors have changed since the last call, if nothing
   /// else has changed; null: any vector may have changed.
-  FieldState Look(const VoxelGrid& voxelGrid, const DisplacementField& field,
+  FieldCheckResult Look(const VoxelGrid& voxelGrid, const DisplacementField& field,
     const PointRanges* changes = nullptr);
 
 private:

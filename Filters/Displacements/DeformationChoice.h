@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeVectorChoice_h
-#define DeformVolumeVectorChoice_h
+#ifndef DeformVolumeDeformationChoice_h
+#define DeformVolumeDeformationChoice_h
 
 #include "DeformationSource.h"
 #include "Fading.h"
@@ -43,7 +43,7 @@ void FillDeformationPort(bool isRest, vtkInformation* info);
 
 /// Throws the Error of filters with a rest configuration but no deformation. The numbers are those
 /// of the input ports.
-[[noreturn]] void ThrowRestAlone(int restPort, int deformationPort);
+[[noreturn]] void ThrowRestWithoutDeformation(int restPort, int deformationPort);
 
 } // namespace deformvolume
 

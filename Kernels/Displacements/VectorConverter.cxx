@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "VectorReading.h"
+#include "VectorConverter.h"
 
 #include "DeviceVectorsInternals.h"
 #include "DisplacementBuffer.h"
@@ -68,7 +68,7 @@ private:
 
 } // namespace
 
-std::optional<PointRanges> VectorReading::Begin(const std::shared_ptr<DeviceVectors>& vectors,
+std::optional<PointRanges> VectorConverter::Begin(const std::shared_ptr<DeviceVectors>& vectors,
   const DisplacementField& field, std::size_t numberOfPoints)
 {
   CheckVectors(vectors.get(), this->Device, numberOfPoints);
@@ -82,25 +82,25 @@ std::optional<PointRanges> VectorReading::Begin(const std::shared_ptr<DeviceVect
   return changes;
 }
 
-void VectorReading::Forget()
+void VectorConverter::Forget()
 {
   this->ForgetVectors();
   this->Portion = cl::Buffer();
 }
 
-void VectorReading::ForgetVectors()
+void VectorConverter::ForgetVectors()
 {
   this->Vectors.reset();
   std::vector<float>().swap(this->Displacements);
 }
 
-bool VectorReading::CanConvert(const DisplacementField& field) const
+bool VectorConverter::CanConvert(const DisplacementField& field) const
 {
   return !this->Device.GetDevice().IsProcessor &&
     (HasDouble(this->Device.GetContext()) || HasDisplacements(field));
 }
 
-void VectorReading::Convert(const cl::Buffer& displacements, const char* what)
+void VectorConverter::Convert(const cl::Buffer& displacements, const char* what)
 {
   Conversion conversion(this->Device, this->Field, displacements);
   conversion.Launch(
@@ -109,8 +109,8 @@ void VectorReading::Convert(const cl::Buffer& displacements, const char* what)
   conversion.Finish(what);
 }
 
-void VectorReading::Convert(const DisplacementField& field, const std::array<std::size_t, 2>& range,
-  const cl::Buffer& displacements, const char* what)
+void VectorConverter::Convert(const DisplacementField& field,
+  const std::array<std::size_t, 2>& range, const cl::Buffer& displacements, const char* what)
 {
   this->ForgetVectors();
   const std::size_t most =
@@ -126,7 +126,7 @@ void VectorReading::Convert(const DisplacementField& field, const std::array<std
   conversion.Finish(what);
 }
 
-void VectorReading::Check(const std::optional<PointRanges>& changes, const char* what)
+void VectorConverter::Check(const std::optional<PointRanges>& changes, const char* what)
 {
   DisplacementField field = this->Field;
   field.Vectors = this->Vectors->Read();
@@ -159,7 +159,7 @@ void VectorReading::Check(const std::optional<PointRanges>& changes, const char*
   }
 }
 
-const float* VectorReading::GetDisplacements(const std::optional<PointRanges>& changes)
+const float* VectorConverter::GetDisplacements(const std::optional<PointRanges>& changes)
 {
   const float* vectors = this->Vectors->Read();
   if (HasDisplacements(this->Field))

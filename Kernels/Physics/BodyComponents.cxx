@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BodyPieces.h"
+#include "BodyComponents.h"
 
 #include "AbortCheck.h"
 #include "CountedLists.h"
@@ -21,12 +21,12 @@ namespace deformvolume
 namespace
 {
 
-void FindNodes(const ElasticBody& body, BodyPieces& pieces)
+void FindNodes(const ElasticBody& body, BodyComponents& pieces)
 {
   pieces.PieceOfNode.assign(body.Points.size(), -1);
   for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
   {
-    const std::int32_t here = pieces.PieceOfTetrahedron[t];
+    const std::int32_t here = pieces.ComponentOfTetrahedron[t];
     body.ForNodes(t,
       [&](std::int32_t node)
       {
@@ -49,15 +49,16 @@ void FindNodes(const ElasticBody& body, BodyPieces& pieces)
   std::sort(pieces.SharedByPieces.begin(), pieces.SharedByPieces.end());
 }
 
-void SortTetrahedra(BodyPieces& pieces)
+void SortTetrahedra(BodyComponents& pieces)
 {
   MakeLists(
     static_cast<std::size_t>(pieces.NumberOfPieces),
     [&](const auto& take)
     {
-      for (std::size_t t = 0; t < pieces.PieceOfTetrahedron.size(); ++t)
+      for (std::size_t t = 0; t < pieces.ComponentOfTetrahedron.size(); ++t)
       {
-        take(static_cast<std::size_t>(pieces.PieceOfTetrahedron[t]), static_cast<std::int32_t>(t));
+        take(
+          static_cast<std::size_t>(pieces.ComponentOfTetrahedron[t]), static_cast<std::int32_t>(t));
       }
     },
     pieces.Begins, pieces.Tetrahedra);
@@ -151,7 +152,7 @@ public:
     // Points on a line lie on it only up to the rounding of floats.
     this->IsStiff = this->IsStiff ||
       glm::length(glm::cross(offset, along)) >
-        ElasticBody::LargestSine * glm::length(offset) * glm::length(along);
+        ElasticBody::ParallelSine * glm::length(offset) * glm::length(along);
   }
 
   bool Holds() const { return this->IsStiff || (this->Slides && this->Planes.Holds()); }
@@ -165,7 +166,7 @@ private:
 };
 
 // Rotates a vector by the smallest rotation that turns the unit vector `from` into `to`.
-glm::dvec3 TurnBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& vector)
+glm::dvec3 RotateBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& vector)
 {
   const glm::dvec3 axis = glm::cross(from, to);
   const double cosine = glm::dot(from, to);
@@ -183,7 +184,7 @@ glm::dvec3 TurnBetween(const glm::dvec3& from, const glm::dvec3& to, const glm::
 
 } // namespace
 
-BodyPieces FindPieces(const ElasticBody& body, AbortCheck* abortCheck)
+BodyComponents FindBodyComponents(const ElasticBody& body, AbortCheck* abortCheck)
 {
   AbortCheck none(nullptr);
   AbortCheck& given = abortCheck ? *abortCheck : none;
@@ -199,14 +200,14 @@ BodyPieces FindPieces(const ElasticBody& body, AbortCheck* abortCheck)
           static_cast<std::int32_t>(t), static_cast<std::int32_t>(neighbors.GetNext(face) / 4));
       }
     });
-  BodyPieces pieces;
-  pieces.PieceOfTetrahedron.resize(body.Tetrahedra.size());
+  BodyComponents pieces;
+  pieces.ComponentOfTetrahedron.resize(body.Tetrahedra.size());
   for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
   {
     // The root of a set is its lowest tetrahedron.
     const auto root = static_cast<std::size_t>(sets.Find(static_cast<std::int32_t>(t)));
-    pieces.PieceOfTetrahedron[t] =
-      root == t ? pieces.NumberOfPieces++ : pieces.PieceOfTetrahedron[root];
+    pieces.ComponentOfTetrahedron[t] =
+      root == t ? pieces.NumberOfPieces++ : pieces.ComponentOfTetrahedron[root];
   }
   given.Check();
   SortTetrahedra(pieces);
@@ -216,15 +217,15 @@ BodyPieces FindPieces(const ElasticBody& body, AbortCheck* abortCheck)
   return pieces;
 }
 
-PieceSupports FindSupports(
-  const ElasticBody& body, const BodyPieces& pieces, const std::vector<unsigned char>& isNotFree)
+ComponentSupports FindSupports(const ElasticBody& body, const BodyComponents& pieces,
+  const std::vector<unsigned char>& isConstrained)
 {
   const auto number = static_cast<std::size_t>(pieces.NumberOfPieces);
   std::vector<Support> supports(number);
   const bool slides = !body.SlidingNormals.empty() || !body.SecondSlidingNormals.empty();
   for (std::size_t node = 0; node < body.Points.size() && slides; ++node)
   {
-    if (isNotFree[node] != 0 || pieces.PieceOfNode[node] < 0)
+    if (isConstrained[node] != 0 || pieces.PieceOfNode[node] < 0)
     {
       continue;
     }
@@ -249,7 +250,7 @@ PieceSupports FindSupports(
   }
   for (std::size_t node = 0; node < body.Points.size(); ++node)
   {
-    if (isNotFree[node] != 0 && pieces.PieceOfNode[node] >= 0)
+    if (isConstrained[node] != 0 && pieces.PieceOfNode[node] >= 0)
     {
       supports[static_cast<std::size_t>(pieces.PieceOfNode[node])].Add(
         body.Points, static_cast<std::int32_t>(node));
@@ -257,7 +258,7 @@ PieceSupports FindSupports(
   }
   for (const auto& [node, piece] : pieces.SharedNodes)
   {
-    if (isNotFree[static_cast<std::size_t>(node)] != 0)
+    if (isConstrained[static_cast<std::size_t>(node)] != 0)
     {
       supports[static_cast<std::size_t>(piece)].Add(body.Points, node);
     }
@@ -297,7 +298,7 @@ PieceSupports FindSupports(
         });
     }
   };
-  PieceSupports result;
+  ComponentSupports result;
   spread([](const Support& support) { return support.Holds(); }, [](std::int32_t) {});
   result.IsHeld = isTaken;
   spread([](const Support& support) { return support.Nodes[0] >= 0; },
@@ -309,7 +310,7 @@ PieceSupports FindSupports(
   return result;
 }
 
-void MoveFollowing(const ElasticBody& body, const BodyPieces& pieces,
+void MoveFollowing(const ElasticBody& body, const BodyComponents& pieces,
   const std::vector<FollowingPiece>& following, std::vector<unsigned char>& isSettled,
   std::vector<glm::dvec3>& displacements)
 {
@@ -338,7 +339,7 @@ void MoveFollowing(const ElasticBody& body, const BodyPieces& pieces,
           {
             isSettled[node] = 1;
             displacements[node] =
-              moved + TurnBetween(from, to, body.Points[node] - origin) - body.Points[node];
+              moved + RotateBetween(from, to, body.Points[node] - origin) - body.Points[node];
           }
         });
     }

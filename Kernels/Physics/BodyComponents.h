@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeBodyPieces_h
-#define DeformVolumeBodyPieces_h
+#ifndef DeformVolumeBodyComponents_h
+#define DeformVolumeBodyComponents_h
 
 #include "DeformVolumeExport.h"
 #include "ElasticBody.h"
@@ -18,10 +18,10 @@ class AbortCheck;
 
 /// The pieces of a body: tetrahedra that are connected through faces. Two pieces can still share
 /// one node, two nodes (a hinge) or more.
-struct BodyPieces
+struct BodyComponents
 {
   /// The piece of each tetrahedron.
-  std::vector<std::int32_t> PieceOfTetrahedron;
+  std::vector<std::int32_t> ComponentOfTetrahedron;
   /// The tetrahedra, sorted by pieces.
   std::vector<std::int32_t> Tetrahedra;
   /// Index in Tetrahedra of the first tetrahedron of each piece. The last value is the end.
@@ -38,7 +38,7 @@ struct BodyPieces
 };
 /// Finds the pieces of a body. abortCheck: checks for an abort. Callers outside
 /// the engine pass null.
-DEFORMVOLUME_EXPORT BodyPieces FindPieces(
+DEFORMVOLUME_EXPORT BodyComponents FindBodyComponents(
   const ElasticBody& body, AbortCheck* abortCheck = nullptr);
 
 /// A piece that is not held, but has supporting nodes: one node, or several on a line. Supporting
@@ -55,7 +55,7 @@ struct FollowingPiece
 };
 
 /// Which pieces of a body are held, and which follow others.
-struct PieceSupports
+struct ComponentSupports
 {
   /// Whether each piece is held. A piece is held if at least three of its supporting nodes lie on
   /// no common line, or if its supporting nodes and sliding nodes together prevent all rigid-body
@@ -66,15 +66,16 @@ struct PieceSupports
   /// here.
   std::vector<FollowingPiece> Following;
 };
-/// isNotFree: one byte for each node, not 0 if the node is fixed or held by a handle.
-DEFORMVOLUME_EXPORT PieceSupports FindSupports(
-  const ElasticBody& body, const BodyPieces& pieces, const std::vector<unsigned char>& isNotFree);
+/// Finds which pieces cannot move as rigid bodies, and in which order the others follow.
+/// isConstrained: one byte for each node, not 0 if the node is fixed or held by a handle.
+DEFORMVOLUME_EXPORT ComponentSupports FindSupports(const ElasticBody& body,
+  const BodyComponents& pieces, const std::vector<unsigned char>& isConstrained);
 
 /// Moves each following piece like a rigid body, so that its supporting nodes keep their
 /// displacements. A piece with two supporting nodes is rotated by the smallest possible angle.
 /// isSettled: nodes that already have their final displacement; the nodes of the moved pieces are
 /// added.
-DEFORMVOLUME_EXPORT void MoveFollowing(const ElasticBody& body, const BodyPieces& pieces,
+DEFORMVOLUME_EXPORT void MoveFollowing(const ElasticBody& body, const BodyComponents& pieces,
   const std::vector<FollowingPiece>& following, std::vector<unsigned char>& isSettled,
   std::vector<glm::dvec3>& displacements);
 

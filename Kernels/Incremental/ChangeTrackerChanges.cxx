@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// IncrementalUpdate: the sub-bricks that a change of the deformation or of masks affects.
-#include "IncrementalUpdate.h"
+// ChangeTracker: the sub-bricks that a change of the deformation or of masks affects.
+#include "ChangeTracker.h"
 
 #include "ParallelFor.h"
 
@@ -20,7 +20,7 @@ constexpr int MaskHalo = 1;
 
 } // namespace
 
-void IncrementalUpdate::SetHalo(int halo)
+void ChangeTracker::SetHalo(int halo)
 {
   if (this->SubBricks.Halo != halo)
   {
@@ -29,12 +29,12 @@ void IncrementalUpdate::SetHalo(int halo)
   }
 }
 
-std::vector<unsigned char> IncrementalUpdate::AddCut(const std::vector<CutVertex>& vertices)
+std::vector<unsigned char> ChangeTracker::AddCut(const std::vector<CutVertex>& vertices)
 {
   std::vector<unsigned char> found(vertices.empty() ? 0 : this->SubBricks.GetNumberOfBricks());
   for (const CutVertex& v : vertices)
   {
-    this->ForSubBricks({ { v.X, v.X, v.Y, v.Y, v.Z, v.Z } }, 0, 0,
+    this->ForSubBricks({ { v.X, v.X, v.Y, v.Y, v.Z, v.Z } }, false, 0,
       [&](std::size_t subBrick) { found[subBrick] = 1; });
   }
   this->IsCut.resize(this->SubBricks.GetNumberOfBricks());
@@ -46,16 +46,16 @@ std::vector<unsigned char> IncrementalUpdate::AddCut(const std::vector<CutVertex
       this->Known[subBrick] = 0; // the box becomes wider
     }
   }
-  this->BoxesKnown = false;
+  this->PlanBoxesKnown = false;
   return found;
 }
 
-void IncrementalUpdate::SetCut(const std::vector<CutVertex>& vertices)
+void ChangeTracker::SetCut(const std::vector<CutVertex>& vertices)
 {
   this->IsCut = this->AddCut(vertices); // boxes that were cut before may stay wider than needed
 }
 
-void IncrementalUpdate::SetPoints(BrickPoints&& points)
+void ChangeTracker::SetPoints(BrickPoints&& points)
 {
   this->Points = std::move(points);
   std::vector<std::vector<std::size_t>> bricks(this->Bricks.GetNumberOfBricks());
@@ -66,15 +66,15 @@ void IncrementalUpdate::SetPoints(BrickPoints&& points)
   this->PointsOfBricks = this->Points.Join(bricks);
 }
 
-void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
+void ChangeTracker::MovePoints(const PointSet& changed, const float* last)
 {
   std::size_t first = 0;
   std::size_t past = 0;
   changed.GetEnds(first, past);
   const auto hasMoved = [&](const BrickPoints& points, std::size_t brick)
   {
-    return !points.IsApart(brick, first, past) &&
-      points.AnyOf(
+    return !points.IsOutside(brick, first, past) &&
+      points.AnyRange(
         brick, [&](std::size_t begin, std::size_t end) { return changed.HasAnyOf(begin, end); });
   };
   // Test bricks first: most of them have no changed points.
@@ -100,10 +100,10 @@ void IncrementalUpdate::MovePoints(const PointSet& changed, const float* last)
         }
       }
     });
-  this->BoxesKnown = false;
+  this->PlanBoxesKnown = false;
 }
 
-void IncrementalUpdate::Move(std::size_t subBrick, const float* last)
+void ChangeTracker::Move(std::size_t subBrick, const float* last)
 {
   if (!this->HasCells(subBrick))
   {
@@ -119,15 +119,15 @@ void IncrementalUpdate::Move(std::size_t subBrick, const float* last)
   this->Known[subBrick] = 0;
 }
 
-std::optional<std::vector<Extent>> IncrementalUpdate::ChangeTetrahedra(
+std::optional<std::vector<Extent>> ChangeTracker::ChangeTetrahedra(
   const std::vector<TetrahedronChange>& changes, const float* last)
 {
-  if (!this->HasPoints() || this->Points.AreOverloaded())
+  if (!this->HasPoints() || this->Points.ShouldRebuild())
   {
-    this->ForgetMapping();
+    this->InvalidateMapping();
     return {};
   }
-  const BrickPoints::NodesBefore nodes(changes);
+  const BrickPoints::PreviousNodes nodes(changes);
   std::vector<unsigned char> near(this->Bricks.GetNumberOfBricks());
   const std::vector<BrickPoints::ChangesOfBrick> bricks =
     this->PointsOfBricks.FindBricks(nodes, [](std::size_t) { return true; });
@@ -149,11 +149,11 @@ std::optional<std::vector<Extent>> IncrementalUpdate::ChangeTetrahedra(
     this->Known[subBrick.first] = 0;
   }
   this->Points.AddPoints(subBricks, changes);
-  this->BoxesKnown = false;
+  this->PlanBoxesKnown = false;
   return boxes;
 }
 
-void IncrementalUpdate::AddMoved(const DisplacementBounds& after)
+void ChangeTracker::AddMoved(const DisplacementBounds& after)
 {
   if (this->AllBounds)
   {
@@ -162,8 +162,9 @@ void IncrementalUpdate::AddMoved(const DisplacementBounds& after)
 }
 
 template <typename Body>
-void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int halo, Body&& body) const
+void ChangeTracker::ForSubBricks(const Extent& box, bool ofCells, int halo, Body&& body) const
 {
+  const int more = ofCells ? 1 : 0;
   Extent subBricks; // first and last on each axis that may touch the box
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -193,7 +194,7 @@ void IncrementalUpdate::ForSubBricks(const Extent& box, int more, int halo, Body
     });
 }
 
-void IncrementalUpdate::ChangeMask(const std::vector<Extent>& changes, bool ofCells)
+void ChangeTracker::ChangeMask(const std::vector<Extent>& changes, bool ofCells)
 {
   if (!this->Tracking)
   {
@@ -204,13 +205,12 @@ void IncrementalUpdate::ChangeMask(const std::vector<Extent>& changes, bool ofCe
   const int halo = MaskHalo + (hasCuts ? BrickGrid::HaloOfCuts : 0);
   for (const Extent& box : changes)
   {
-    // The vertices of a cell extend one voxel beyond its index.
-    this->ForSubBricks(box, ofCells ? 1 : 0, halo,
+    this->ForSubBricks(box, ofCells, halo,
       [&](std::size_t subBrick) { this->Masked[subBrick] |= this->HasCells(subBrick) ? 1 : 0; });
   }
   if (!changes.empty())
   {
-    this->BoxesKnown = false; // more sub-bricks have changed
+    this->PlanBoxesKnown = false; // more sub-bricks have changed
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeLaunches_h
-#define DeformVolumeLaunches_h
+#ifndef DeformVolumeKernelLauncher_h
+#define DeformVolumeKernelLauncher_h
 
 #include "DeformRequest.h"
 #include "WorkDevice.h"
@@ -12,10 +12,10 @@ namespace deformvolume
 {
 
 /// The launches of kernels of a deformation: their times, and the progress by their number.
-class Launches
+class KernelLauncher
 {
 public:
-  explicit Launches(WorkDevice& device)
+  explicit KernelLauncher(WorkDevice& device)
     : Device(device)
   {
   }
@@ -29,10 +29,10 @@ public:
 
   /// Enqueues a kernel.
   void Launch(const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group);
-  /// Enqueues a kernel, waits for the previous call of Run(), so that the device always has work,
-  /// and reports progress. Throws Aborted if the progress callback returns false.
-  void Run(const DeformRequest& request, const cl::Kernel& kernel, const cl::NDRange& items,
-    const cl::NDRange& group);
+  /// Enqueues a kernel, waits for the previous call of LaunchAndReport(), so that the device always
+  /// has work, and reports progress. Throws Aborted if the progress callback returns false.
+  void LaunchAndReport(const DeformRequest& request, const cl::Kernel& kernel,
+    const cl::NDRange& items, const cl::NDRange& group);
 
   ///@{
   /// Set the expected number of further launches; add to it; or set a lower limit.
@@ -51,7 +51,7 @@ private:
   WorkDevice& Device;
   std::vector<cl::Event> Mapping;
   std::vector<cl::Event> Resampling;
-  cl::Event Last; // of Run()
+  cl::Event Last; // of LaunchAndReport()
   std::size_t Done = 0;
   std::size_t Expected = 1; // estimated total, including Done
   double Reported = 0.0;    // the last progress

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// IncrementalUpdate: the boxes of sub-bricks in the output.
-#include "IncrementalUpdate.h"
+// ChangeTracker: the boxes of sub-bricks in the output.
+#include "ChangeTracker.h"
 
 #include "IndexBounds.h"
 #include "ParallelFor.h"
@@ -22,7 +22,7 @@ constexpr double LargestMove = 16384.0;
 
 } // namespace
 
-DisplacementBounds IncrementalUpdate::ComputeBounds(
+DisplacementBounds ChangeTracker::ComputeBounds(
   std::size_t subBrick, const Displacements& displacements) const
 {
   if (displacements.OfSubBricks)
@@ -32,7 +32,7 @@ DisplacementBounds IncrementalUpdate::ComputeBounds(
   DisplacementBounds bounds;
   const auto add = [&](const auto& from)
   {
-    this->Points.AnyOf(subBrick,
+    this->Points.AnyRange(subBrick,
       [&](std::size_t begin, std::size_t end)
       {
         bounds.Add(from, begin, end);
@@ -50,7 +50,7 @@ DisplacementBounds IncrementalUpdate::ComputeBounds(
   return bounds;
 }
 
-DisplacementBounds IncrementalUpdate::ComputeAllBounds(
+DisplacementBounds ChangeTracker::ComputeAllBounds(
   const Displacements& displacements, std::size_t numberOfPoints) const
 {
   if (displacements.OfSubBricks)
@@ -65,11 +65,11 @@ DisplacementBounds IncrementalUpdate::ComputeAllBounds(
   return Join(steps);
 }
 
-IncrementalUpdate::Box IncrementalUpdate::MakeBox(
+ChangeTracker::Box ChangeTracker::MakeBox(
   std::size_t subBrick, const DisplacementBounds& bounds) const
 {
   const Extent vertices = this->SubBricks.GetVertices(subBrick, 0);
-  const double excess = this->Points.GetExcess(subBrick);
+  const double excess = this->Points.GetNegativeWeightSum(subBrick);
   if (GetNumberOfCells(vertices) == 0)
   {
     return Box();
@@ -82,8 +82,8 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
   Box box;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const float least = bounds.Least[axis];
-    const float greatest = bounds.Greatest[axis];
+    const float least = bounds.Min[axis];
+    const float greatest = bounds.Max[axis];
     if (!(least <= greatest)) // no vertex has a position
     {
       return Box();
@@ -115,7 +115,7 @@ IncrementalUpdate::Box IncrementalUpdate::MakeBox(
   return box;
 }
 
-IncrementalUpdate::Box IncrementalUpdate::GetDirtyBox() const
+ChangeTracker::Box ChangeTracker::GetDirtyBox() const
 {
   Box dirtyBox;
   this->ForChangedBoxes([&](const Box& box) { dirtyBox.Add(box); });
@@ -128,7 +128,7 @@ IncrementalUpdate::Box IncrementalUpdate::GetDirtyBox() const
 }
 
 template <typename IsWanted>
-void IncrementalUpdate::FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements)
+void ChangeTracker::FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements)
 {
   ParallelForParts(this->SubBricks.GetNumberOfBricks(), StepSize,
     [&](std::size_t begin, std::size_t end)
@@ -145,23 +145,23 @@ void IncrementalUpdate::FindBoxesOf(const IsWanted& isWanted, const Displacement
     });
 }
 
-void IncrementalUpdate::FindChangedBoxes(const Displacements& displacements)
+void ChangeTracker::FindChangedBoxes(const Displacements& displacements)
 {
   this->FindBoxesOf([&](std::size_t subBrick) { return this->IsChanged(subBrick); }, displacements);
 }
 
-void IncrementalUpdate::FindAllBoxes(const Displacements& displacements)
+void ChangeTracker::FindAllBoxes(const Displacements& displacements)
 {
   this->FindBoxesOf([](std::size_t) { return true; }, displacements);
 }
 
-bool IncrementalUpdate::KnowsAllBoxes() const
+bool ChangeTracker::HasAllBoxes() const
 {
   return this->HasPoints() && !this->Known.empty() &&
     std::find(this->Known.begin(), this->Known.end(), 0) == this->Known.end();
 }
 
-void IncrementalUpdate::FindBoxes(const Displacements& displacements, std::size_t numberOfPoints)
+void ChangeTracker::FindPlanBoxes(const Displacements& displacements, std::size_t numberOfPoints)
 {
   if (!this->AllBounds)
   {
@@ -172,7 +172,7 @@ void IncrementalUpdate::FindBoxes(const Displacements& displacements, std::size_
   this->FindBoxesOf([&](std::size_t subBrick)
     { return this->MakeBox(subBrick, *this->AllBounds).Overlaps(dirtyBox); },
     displacements);
-  this->BoxesKnown = true;
+  this->PlanBoxesKnown = true;
 }
 
 } // namespace deformvolume

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Launches.h"
+#include "KernelLauncher.h"
 
 #include "Error.h"
 
@@ -23,7 +23,7 @@ double GetSeconds(const std::vector<cl::Event>& events)
 
 } // namespace
 
-void Launches::Start()
+void KernelLauncher::Start()
 {
   this->Mapping.clear();
   this->Resampling.clear();
@@ -33,17 +33,18 @@ void Launches::Start()
   this->Reported = 0.0;
 }
 
-void Launches::ExpectAtLeast(std::size_t launches)
+void KernelLauncher::ExpectAtLeast(std::size_t launches)
 {
   this->Expected = std::max(this->Expected, this->Done + launches);
 }
 
-void Launches::Launch(const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group)
+void KernelLauncher::Launch(
+  const cl::Kernel& kernel, const cl::NDRange& items, const cl::NDRange& group)
 {
   this->Resampling.push_back(this->GetContext().Launch(this->GetQueue(), kernel, items, group));
 }
 
-void Launches::AddMapping(const cl::Event& launch)
+void KernelLauncher::AddMapping(const cl::Event& launch)
 {
   if (launch())
   {
@@ -51,8 +52,8 @@ void Launches::AddMapping(const cl::Event& launch)
   }
 }
 
-void Launches::Run(const DeformRequest& request, const cl::Kernel& kernel, const cl::NDRange& items,
-  const cl::NDRange& group)
+void KernelLauncher::LaunchAndReport(const DeformRequest& request, const cl::Kernel& kernel,
+  const cl::NDRange& items, const cl::NDRange& group)
 {
   const cl::CommandQueue& queue = this->GetQueue();
   this->Launch(kernel, items, group);
@@ -74,7 +75,7 @@ void Launches::Run(const DeformRequest& request, const cl::Kernel& kernel, const
   }
 }
 
-void Launches::AddTimes(DeformReport& report)
+void KernelLauncher::AddTimes(DeformReport& report)
 {
   report.MappingTime += GetSeconds(this->Mapping);
   report.ResamplingTime += GetSeconds(this->Resampling);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares the bounds of fields in which each voxel is a point with those of all voxels.
-#include "FieldScan.h"
+#include "FieldChecker.h"
 #include "Lanes.h"
 
 #include <gtest/gtest.h>
@@ -85,14 +85,14 @@ struct Case
   }
 };
 
-bool IsEqual(const FieldState& a, const FieldState& b)
+bool IsEqual(const FieldCheckResult& a, const FieldCheckResult& b)
 {
   return a.IsUsable == b.IsUsable && a.Bounds.Min == b.Bounds.Min && a.Bounds.Max == b.Bounds.Max;
 }
 
 } // namespace
 
-TEST(FieldScan, BoundsAreThoseOfAllVoxels)
+TEST(FieldChecker, BoundsAreThoseOfAllVoxels)
 {
   std::mt19937 random(5);
   const bool isWide = HasWideLanes();
@@ -101,14 +101,14 @@ TEST(FieldScan, BoundsAreThoseOfAllVoxels)
     SCOPED_TRACE(i);
     Case one(random);
     ASSERT_TRUE(AreVoxelsPoints(one.Grid, one.Field));
-    FieldScan scan;
-    const FieldState state = scan.Look(one.Grid, one.Field);
+    FieldChecker scan;
+    const FieldCheckResult state = scan.Look(one.Grid, one.Field);
     const IndexBounds wanted = one.FindBounds();
     EXPECT_TRUE(state.IsUsable);
     EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(state.Bounds.Min - wanted.Min), glm::dvec3(1e-9))));
     EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(state.Bounds.Max - wanted.Max), glm::dvec3(1e-9))));
     UseWideLanes(false);
-    EXPECT_TRUE(IsEqual(FieldScan().Look(one.Grid, one.Field), state)) << "without AVX2";
+    EXPECT_TRUE(IsEqual(FieldChecker().Look(one.Grid, one.Field), state)) << "without AVX2";
     UseWideLanes(isWide);
 
     // A few vectors change.
@@ -120,11 +120,11 @@ TEST(FieldScan, BoundsAreThoseOfAllVoxels)
       changes.push_back({ { point, point + 1 } });
     }
     EXPECT_TRUE(
-      IsEqual(scan.Look(one.Grid, one.Field, &changes), FieldScan().Look(one.Grid, one.Field)));
+      IsEqual(scan.Look(one.Grid, one.Field, &changes), FieldChecker().Look(one.Grid, one.Field)));
   }
 }
 
-TEST(FieldScan, UnusableVectorsAreFound)
+TEST(FieldChecker, UnusableVectorsAreFound)
 {
   std::mt19937 random(6);
   constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -132,8 +132,8 @@ TEST(FieldScan, UnusableVectorsAreFound)
   {
     SCOPED_TRACE(i);
     Case one(random);
-    FieldScan scan;
-    const FieldState before = scan.Look(one.Grid, one.Field);
+    FieldChecker scan;
+    const FieldCheckResult before = scan.Look(one.Grid, one.Field);
     const std::size_t value = random() % one.Vectors.size();
     const float was = one.Vectors[value];
     const PointRanges change{ { { value / 3, value / 3 + 1 } } };
@@ -141,7 +141,7 @@ TEST(FieldScan, UnusableVectorsAreFound)
     {
       one.Vectors[value] = bad;
       EXPECT_FALSE(scan.Look(one.Grid, one.Field, &change).IsUsable) << bad;
-      EXPECT_FALSE(FieldScan().Look(one.Grid, one.Field).IsUsable) << bad;
+      EXPECT_FALSE(FieldChecker().Look(one.Grid, one.Field).IsUsable) << bad;
     }
     one.Vectors[value] = was;
     EXPECT_TRUE(IsEqual(scan.Look(one.Grid, one.Field, &change), before));
@@ -150,7 +150,7 @@ TEST(FieldScan, UnusableVectorsAreFound)
   Case one(random);
   one.Field.ToDisplacement = DisplacementField().ToDisplacement;
   one.Vectors.back() = static_cast<float>(LargestDisplacement);
-  EXPECT_TRUE(FieldScan().Look(one.Grid, one.Field).IsUsable);
+  EXPECT_TRUE(FieldChecker().Look(one.Grid, one.Field).IsUsable);
   one.Vectors.back() = std::nextafter(one.Vectors.back(), infinity);
-  EXPECT_FALSE(FieldScan().Look(one.Grid, one.Field).IsUsable);
+  EXPECT_FALSE(FieldChecker().Look(one.Grid, one.Field).IsUsable);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeBridgeMask_h
-#define DeformVolumeBridgeMask_h
+#ifndef DeformVolumeResampledMask_h
+#define DeformVolumeResampledMask_h
 
 #include "Extent.h"
 #include "KernelParameters.h"
@@ -14,16 +14,16 @@ namespace deformvolume
 {
 
 /// Keeps the mask of the tetrahedra of the sampling mesh that are resampled by their vertices, on
-/// the device. The mask excludes bridges over a split of the deformation mesh (BridgeMask.cl has
+/// the device. The mask excludes bridges over a split of the deformation mesh (ResampledMask.cl has
 /// the rule) and cells that the boundary of the mesh crosses (MeshBoundary). An update processes
 /// only cells for which something has changed.
-class BridgeMask
+class ResampledMask
 {
 public:
   /// The data on which the mask of a chunk depends. Any buffer may replace a missing buffer.
-  struct Source
+  struct Inputs
   {
-    cl::Program Program; // GetBridgeProgram()
+    cl::Program Program; // GetResampledMaskProgram()
     const MappingSetter& SetMapping;
     cl::Buffer Owners; // tetrahedra of the records of runs
     cl::Buffer Tetrahedra;
@@ -46,7 +46,7 @@ public:
   bool IsOn() const { return this->HasCoincidentNodes() || this->WithBoundary; }
 
   /// Makes the next update process all cells.
-  void Forget();
+  void Invalidate();
   /// Reports vertices whose tetrahedra have new nodes, or whose entries in the list of a smooth cut
   /// have changed.
   void ChangeVertices(const std::vector<Extent>& vertices);
@@ -58,7 +58,7 @@ public:
   /// Updates the mask of a chunk. p: parameters of the chunk. changes: the boxes of cells with
   /// changes are appended. Call Finish() after all chunks.
   void Update(OpenCLContext& context, const cl::CommandQueue& queue, const KernelParameters& p,
-    VolumeChunk& chunk, const Source& source, std::vector<Extent>& changes);
+    VolumeChunk& chunk, const Inputs& inputs, std::vector<Extent>& changes);
   void Finish();
 
 private:

@@ -38,7 +38,7 @@ static int RunTetrahedronOf(
 
 // Returns SHARES_NODE if two tetrahedra share a node, and IS_SPLIT if they have different nodes with the same position
 // at rest.
-static int Compare(int4 first, int4 second, __global const int* coincidentNodes)
+static int CompareNodes(int4 first, int4 second, __global const int* coincidentNodes)
 {
   const int a[4] = { first.x / DEFORMVOLUME_NODE_STRIDE, first.y / DEFORMVOLUME_NODE_STRIDE,
     first.z / DEFORMVOLUME_NODE_STRIDE, first.w / DEFORMVOLUME_NODE_STRIDE };
@@ -67,7 +67,7 @@ static int2 FindCut(__global const uint* cutRows, __global const CutVertex* cutV
   {
     const int o = v ^ mirror;
     const int index =
-      FindCutVertex(cutRows, cutVertices, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), p);
+      FindCutVertex(cutRows, cutVertices, x + OFFSET_X(o), y + OFFSET_Y(o), z + OFFSET_Z(o), p);
     cut.y |= (cutVertices[index].Distance < 0.0f) << v;
   }
 #endif
@@ -96,7 +96,7 @@ static int FindBridges(
       }
       const int found = owners[v] == owners[w]
         ? SHARES_NODE
-        : Compare(tetrahedra[owners[v]], tetrahedra[owners[w]], coincidentNodes);
+        : CompareNodes(tetrahedra[owners[v]], tetrahedra[owners[w]], coincidentNodes);
       if (found & IS_SPLIT)
       {
         split[v] |= 1 << w;
@@ -122,21 +122,21 @@ static int FindBridges(
       for (int j = 0; j < i; ++j)
       {
         const int v = Tetrahedra[t][i], w = Tetrahedra[t][j];
-        const int isParted = (cut.x >> t & 1) && ((cut.y >> v ^ cut.y >> w) & 1);
-        bridges |= !isParted && ((split[v] >> w & 1) || component[v] != component[w]) ? 1 << t : 0;
+        const int areSeparated = (cut.x >> t & 1) && ((cut.y >> v ^ cut.y >> w) & 1);
+        bridges |= !areSeparated && ((split[v] >> w & 1) || component[v] != component[w]) ? 1 << t : 0;
       }
     }
   }
   return bridges;
 }
 
-// Computes the mask `joined` of the cells of cuboids. changed: set to 1 for each cuboid of the list in which the mask
-// of a cell has changed.
-__kernel void ExcludeBridges(MAPPING_PARAMETERS, __global const int* owners,
+// Computes the mask `resampled` of the cells of cuboids. changed: set to 1 for each cuboid of the list in which the
+// mask of a cell has changed.
+__kernel void UpdateResampledMask(MAPPING_PARAMETERS, __global const int* owners,
   __global const int4* tetrahedraOfMesh, __global const int* coincidentNodes, const int hasCoincidentNodes,
   __global const uchar* boundary, const int hasBoundary, __global const uchar* active, const int hasActive,
   __global const uint* cutRows, __global const CutVertex* cutVertices,
-  __global uchar* joined, __global uint* changed, __global const uint* cuboids, const KernelParameters p)
+  __global uchar* resampled, __global uint* changed, __global const uint* cuboids, const KernelParameters p)
 {
   const Mapping m = MAPPING_ARGUMENTS;
   const int3 first = FirstVertex(cuboids[get_global_id(1)], &p);
@@ -154,7 +154,7 @@ __kernel void ExcludeBridges(MAPPING_PARAMETERS, __global const int* owners,
         for (int v = 0; v < 8 && hasCoincidentNodes; ++v)
         {
           const int o = v ^ mirror;
-          ownersOfCell[v] = TETRAHEDRON_OF(&m, x + (o & 1), y + (o >> 2), z + (o >> 1 & 1), &p);
+          ownersOfCell[v] = TETRAHEDRON_OF(&m, x + OFFSET_X(o), y + OFFSET_Y(o), z + OFFSET_Z(o), &p);
           same &= ownersOfCell[v] == ownersOfCell[0];
         }
         const int bridges = same
@@ -162,12 +162,12 @@ __kernel void ExcludeBridges(MAPPING_PARAMETERS, __global const int* owners,
           : FindBridges(ownersOfCell, FindCut(cutRows, cutVertices, x, y, z, mirror, &p),
               tetrahedraOfMesh, coincidentNodes);
         const size_t cell = CellInChunk(x, y, z, &p);
-        const int ofBoundary = hasBoundary ? boundary[cell] : DEFORMVOLUME_ALL_TETRAHEDRA;
-        const int mask = ofBoundary &
+        const int boundaryMask = hasBoundary ? boundary[cell] : DEFORMVOLUME_ALL_TETRAHEDRA;
+        const int mask = boundaryMask &
           ((DEFORMVOLUME_ALL_TETRAHEDRA & (hasActive ? active[cell] : ~0) & ~bridges) |
             DEFORMVOLUME_CELL_AT_BOUNDARY | DEFORMVOLUME_CELL_CROSSED);
-        isChanged |= mask != joined[cell];
-        joined[cell] = mask;
+        isChanged |= mask != resampled[cell];
+        resampled[cell] = mask;
       }
     }
   }

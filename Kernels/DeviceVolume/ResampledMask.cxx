@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BridgeMask.h"
+#include "ResampledMask.h"
 
 #include "FiveTetrahedra.h"
 #include "HostMemory.h"
@@ -11,7 +11,7 @@
 namespace deformvolume
 {
 
-void BridgeMask::SetCoincidentNodes(
+void ResampledMask::SetCoincidentNodes(
   OpenCLContext& context, const cl::CommandQueue& queue, const std::vector<std::int32_t>& numbers)
 {
   const bool had = this->HasCoincidentNodes();
@@ -20,7 +20,7 @@ void BridgeMask::SetCoincidentNodes(
     this->CoincidentNodes = cl::Buffer();
     if (had)
     {
-      this->Forget();
+      this->Invalidate();
     }
     return;
   }
@@ -33,35 +33,35 @@ void BridgeMask::SetCoincidentNodes(
   queue.enqueueWriteBuffer(this->CoincidentNodes, CL_TRUE, 0, bytes, numbers.data());
   if (!had)
   {
-    this->Forget();
+    this->Invalidate();
   }
 }
 
-void BridgeMask::SetBoundary(bool has)
+void ResampledMask::SetBoundary(bool has)
 {
   this->WithBoundary = has;
-  this->Forget();
+  this->Invalidate();
 }
 
-void BridgeMask::Forget()
+void ResampledMask::Invalidate()
 {
   this->Current = !this->IsOn();
   this->Known = false;
 }
 
-void BridgeMask::ChangeVertices(const std::vector<Extent>& vertices)
+void ResampledMask::ChangeVertices(const std::vector<Extent>& vertices)
 {
   this->Vertices.insert(this->Vertices.end(), vertices.begin(), vertices.end());
   this->Current = this->Current && (vertices.empty() || !this->IsOn());
 }
 
-void BridgeMask::ChangeCells(const std::vector<Extent>& cells)
+void ResampledMask::ChangeCells(const std::vector<Extent>& cells)
 {
   this->Cells.insert(this->Cells.end(), cells.begin(), cells.end());
   this->Current = this->Current && (cells.empty() || !this->IsOn());
 }
 
-void BridgeMask::Finish()
+void ResampledMask::Finish()
 {
   this->Current = true;
   this->Known = true;
@@ -69,8 +69,8 @@ void BridgeMask::Finish()
   this->Cells.clear();
 }
 
-void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
-  const KernelParameters& p, VolumeChunk& chunk, const Source& source, std::vector<Extent>& changes)
+void ResampledMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
+  const KernelParameters& p, VolumeChunk& chunk, const Inputs& inputs, std::vector<Extent>& changes)
 {
   const std::uint64_t bytes = static_cast<std::uint64_t>(p.Size[0] - 1) *
     static_cast<std::uint64_t>(p.Size[1] - 1) *
@@ -95,13 +95,13 @@ void BridgeMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   const cl::Buffer list(context.GetContext(), CL_MEM_READ_ONLY, atOnce * sizeof(cl_uint));
   const cl::Buffer changed(context.GetContext(), CL_MEM_READ_WRITE, atOnce * sizeof(cl_uint));
   const QueueGuard guard(queue);
-  cl::Kernel kernel(source.Program, "ExcludeBridges");
-  SetArguments(kernel, source.SetMapping(kernel, chunk), source.Owners,
-    source.Tetrahedra() ? source.Tetrahedra : source.Other,
-    this->HasCoincidentNodes() ? this->CoincidentNodes : source.Other,
-    cl_int{ this->HasCoincidentNodes() }, this->WithBoundary ? chunk.Boundary : source.Other,
-    cl_int{ this->WithBoundary }, source.Active, cl_int{ source.HasActive }, source.CutRows,
-    source.CutVertices, chunk.ResampledTetrahedra, changed, list, p);
+  cl::Kernel kernel(inputs.Program, "UpdateResampledMask");
+  SetArguments(kernel, inputs.SetMapping(kernel, chunk), inputs.Owners,
+    inputs.Tetrahedra() ? inputs.Tetrahedra : inputs.Other,
+    this->HasCoincidentNodes() ? this->CoincidentNodes : inputs.Other,
+    cl_int{ this->HasCoincidentNodes() }, this->WithBoundary ? chunk.Boundary : inputs.Other,
+    cl_int{ this->WithBoundary }, inputs.Active, cl_int{ inputs.HasActive }, inputs.CutRows,
+    inputs.CutVertices, chunk.ResampledTetrahedra, changed, list, p);
   std::vector<cl_uint> flags;
   VertexCuboids::ForAll(context, queue, cuboids, list,
     [&](const VertexCuboids::Launch& launch, std::size_t begin, std::size_t count)

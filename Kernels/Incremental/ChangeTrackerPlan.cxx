@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// IncrementalUpdate: chooses the sections to resample and the patches to clear, from the changes
+// ChangeTracker: chooses the sections to resample and the patches to clear, from the changes
 // and the boxes.
-#include "IncrementalUpdate.h"
+#include "ChangeTracker.h"
 
 #include <algorithm>
 #include <bitset>
@@ -16,7 +16,7 @@ namespace
 constexpr std::uint32_t AllSpans = (1U << DEFORMVOLUME_SPANS) - 1;
 
 // Returns the section bits of a brick, with all spans between the lowest and the highest one.
-std::uint32_t JoinSpans(std::uint32_t bits)
+std::uint32_t FillSpanGaps(std::uint32_t bits)
 {
   const std::uint32_t spans = bits & AllSpans;
   std::uint32_t upToHighest = spans;
@@ -33,7 +33,7 @@ std::size_t CountSections(std::uint32_t bits)
 {
   const auto count = [](std::uint32_t v) { return std::bitset<32>(v).count(); };
   const std::uint32_t halves = bits >> DEFORMVOLUME_SPANS;
-  return count(JoinSpans(bits) & AllSpans) * count(halves & 3) * count(halves >> 2);
+  return count(FillSpanGaps(bits) & AllSpans) * count(halves & 3) * count(halves >> 2);
 }
 
 // Returns the numbers of the marked patches.
@@ -60,12 +60,12 @@ std::size_t GetMost(std::size_t all)
 
 } // namespace
 
-std::size_t IncrementalUpdate::GetMostMoved(std::size_t numberOfPoints) const
+std::size_t ChangeTracker::GetMaxMoved(std::size_t numberOfPoints) const
 {
   return GetMost(numberOfPoints);
 }
 
-bool IncrementalUpdate::GetVoxels(const Box& box, Extent& voxels) const
+bool ChangeTracker::GetVoxels(const Box& box, Extent& voxels) const
 {
   for (int axis = 0; axis < 3; ++axis)
   {
@@ -82,9 +82,9 @@ bool IncrementalUpdate::GetVoxels(const Box& box, Extent& voxels) const
   return true;
 }
 
-Extent IncrementalUpdate::GetChangedExtent() const
+Extent ChangeTracker::GetChangedExtent() const
 {
-  Extent changed{ { 0, -1, 0, -1, 0, -1 } };
+  Extent changed = EmptyExtent;
   this->ForChangedBoxes(
     [&](const Box& box)
     {
@@ -102,7 +102,7 @@ Extent IncrementalUpdate::GetChangedExtent() const
 }
 
 template <typename Body>
-bool IncrementalUpdate::AnyRowOfPatches(const Box& box, Body&& body) const
+bool ChangeTracker::AnyRowOfPatches(const Box& box, Body&& body) const
 {
   Extent voxels;
   if (!this->GetVoxels(box, voxels))
@@ -125,7 +125,7 @@ bool IncrementalUpdate::AnyRowOfPatches(const Box& box, Body&& body) const
   return false;
 }
 
-std::vector<unsigned char> IncrementalUpdate::FindDirtyPatches() const
+std::vector<unsigned char> ChangeTracker::FindDirtyPatches() const
 {
   std::vector<unsigned char> dirty(static_cast<std::size_t>(this->PatchCount[0]) *
     static_cast<std::size_t>(this->PatchCount[1]) * static_cast<std::size_t>(this->PatchCount[2]));
@@ -142,12 +142,12 @@ std::vector<unsigned char> IncrementalUpdate::FindDirtyPatches() const
   return dirty;
 }
 
-std::vector<std::uint32_t> IncrementalUpdate::GetChangedPatches() const
+std::vector<std::uint32_t> ChangeTracker::GetChangedPatches() const
 {
   return ListPatches(this->FindDirtyPatches());
 }
 
-void IncrementalUpdate::AddSections(
+void ChangeTracker::AddSections(
   const std::vector<unsigned char>& dirty, std::vector<std::uint32_t>& toResample) const
 {
   const auto isDirty = [&](std::ptrdiff_t first, std::ptrdiff_t end)
@@ -164,7 +164,7 @@ void IncrementalUpdate::AddSections(
   }
 }
 
-bool IncrementalUpdate::MakePlan(bool inside, Plan& plan)
+bool ChangeTracker::PlanUpdate(bool inside, Plan& plan)
 {
   std::vector<std::uint32_t> toResample(this->Bricks.GetNumberOfBricks()); // sections of bricks
   bool isChanged = false;
@@ -206,7 +206,7 @@ bool IncrementalUpdate::MakePlan(bool inside, Plan& plan)
     if (toResample[brick])
     {
       plan.Bricks.push_back(static_cast<std::uint32_t>(
-        brick | JoinSpans(toResample[brick]) << DEFORMVOLUME_BRICK_BITS));
+        brick | FillSpanGaps(toResample[brick]) << DEFORMVOLUME_BRICK_BITS));
     }
   }
   return true;

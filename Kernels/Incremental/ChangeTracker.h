@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeIncrementalUpdate_h
-#define DeformVolumeIncrementalUpdate_h
+#ifndef DeformVolumeChangeTracker_h
+#define DeformVolumeChangeTracker_h
 
 #include "BrickPoints.h"
 #include "DisplacementBounds.h"
@@ -33,7 +33,7 @@ namespace deformvolume
 /// only the changed sub-bricks are resampled. Their cells fill the same space as before, between
 /// cells that do not change, so they own the same voxels. Inverted cells are an exception, which
 /// the counts of writes reveal.
-class IncrementalUpdate : public DisplacementObserver
+class ChangeTracker : public DisplacementObserver
 {
 public:
   /// The parts to update.
@@ -43,7 +43,7 @@ public:
     std::vector<std::uint32_t> Patches; // numbered along x, then y, then z
   };
 
-  /// Notes that the whole output of this extent was made.
+  /// Records that the whole output of this extent was made.
   void Start(const BrickGrid& bricks, const VoxelGrid& voxelGrid, const Extent& output);
   /// Set how far bricks depend on vertices beyond them (BrickGrid::Halo).
   void SetHalo(int halo);
@@ -53,8 +53,8 @@ public:
   /// cut. Returns for each sub-brick whether it has vertices of the new cut; empty if none has.
   std::vector<unsigned char> AddCut(const std::vector<CutVertex>& vertices);
   /// Discards the last output.
-  void Forget() { this->Tracking = false; }
-  /// Notes that the last output was updated.
+  void Invalidate() { this->Tracking = false; }
+  /// Records that the last output was updated.
   void Finish();
 
   ///@{
@@ -62,11 +62,11 @@ public:
   /// change, the last output is discarded. The bounds of all points only grow until all points
   /// change.
   bool IsTracking() const override { return this->Tracking; }
-  std::size_t GetMostMoved(std::size_t numberOfPoints) const override;
+  std::size_t GetMaxMoved(std::size_t numberOfPoints) const override;
   bool HasPoints() const override { return !this->Points.IsEmpty(); }
   void SetPoints(BrickPoints&& points) override;
-  void ForgetMapping() override;
-  bool KnowsAllBoxes() const override;
+  void InvalidateMapping() override;
+  bool HasAllBoxes() const override;
   void MovePoints(const PointSet& changed, const float* last) override;
   std::optional<std::vector<Extent>> ChangeTetrahedra(
     const std::vector<TetrahedronChange>& changes, const float* last) override;
@@ -80,24 +80,24 @@ public:
   /// sampling mesh. state: the states (VertexState.cl) of the vertices in a box, which must contain
   /// the vertices of these sub-bricks; null if all vertices have a position and all cells are
   /// active.
-  bool IsInside(const unsigned char* state, const Extent& box) const;
+  bool IsChangeInterior(const unsigned char* state, const Extent& box) const;
 
-  /// Whether the boxes that MakePlan needs are known.
-  bool HasBoxes() const { return this->BoxesKnown; }
-  /// Finds the boxes that MakePlan() needs. displacements: of numberOfPoints points, after the
+  /// Whether the boxes that PlanUpdate needs are known.
+  bool HasPlanBoxes() const { return this->PlanBoxesKnown; }
+  /// Finds the boxes that PlanUpdate() needs. displacements: of numberOfPoints points, after the
   /// change.
-  void FindBoxes(const Displacements& displacements, std::size_t numberOfPoints);
+  void FindPlanBoxes(const Displacements& displacements, std::size_t numberOfPoints);
   /// Finds the boxes of all sub-bricks. displacements: the displacements of the last output.
   void FindAllBoxes(const Displacements& displacements);
   /// Finds the boxes of the changed sub-bricks only.
   void FindChangedBoxes(const Displacements& displacements);
 
-  /// Notes that a mask of vertices or cells changed in some boxes.
+  /// Records that a mask of vertices or cells changed in some boxes.
   void ChangeMask(const std::vector<Extent>& changes, bool ofCells);
 
-  /// Plans the update. Returns false if a full update is faster. inside: the result of IsInside();
-  /// if true, no boxes are needed.
-  bool MakePlan(bool inside, Plan& plan);
+  /// Plans the update. Returns false if a full update is faster. inside: the result of
+  /// IsChangeInterior(); if true, no boxes are needed.
+  bool PlanUpdate(bool inside, Plan& plan);
 
   /// Returns a box of the output voxels that may change, in structured indices: the union of the
   /// boxes of changed sub-bricks, before and after the change. These boxes must be known.
@@ -112,10 +112,10 @@ private:
   static constexpr std::size_t StepSize = 256; // sub-bricks for each task of a thread
 
   /// Calls body(sub-brick) for all sub-bricks with vertices in a box, enlarged by `halo` voxels.
-  /// more: 1 if the box is one of cells, 0 if it is one of vertices.
+  /// ofCells: whether the box is one of cells, which have vertices up to one index beyond it.
   template <typename Body>
-  void ForSubBricks(const Extent& box, int more, int halo, Body&& body) const;
-  /// Notes that the points of a sub-brick are about to change.
+  void ForSubBricks(const Extent& box, bool ofCells, int halo, Body&& body) const;
+  /// Records that the points of a sub-brick are about to change.
   void Move(std::size_t subBrick, const float* last);
   DisplacementBounds ComputeBounds(std::size_t subBrick, const Displacements& displacements) const;
   Box MakeBox(std::size_t subBrick, const DisplacementBounds& bounds) const;
@@ -154,7 +154,8 @@ private:
   /// Returns a box of all patches that intersect boxes of changed sub-bricks, before or after the
   /// change.
   Box GetDirtyBox() const;
-  bool HasOnlyInterior(std::size_t subBrick, const unsigned char* state, const Extent& box) const;
+  bool AreVerticesInterior(
+    std::size_t subBrick, const unsigned char* state, const Extent& box) const;
   /// Calls body(first, end) for the rows of the patches that a box intersects, until it returns
   /// true. Returns whether it did.
   template <typename Body>
@@ -170,7 +171,7 @@ private:
   BrickGrid Bricks;
   BrickGrid SubBricks; // all members below refer to these
   VoxelGrid Voxels;
-  Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent OutputExtent = EmptyExtent;
   std::array<int, 3> PatchCount{ { 0, 0, 0 } };
   BrickPoints Points;
   BrickPoints PointsOfBricks;
@@ -178,7 +179,8 @@ private:
   std::vector<std::pair<std::size_t, std::uint32_t>> Sections;
   std::vector<Box> Boxes; // valid where Known
   std::vector<unsigned char> Known;
-  bool BoxesKnown = false; // of changed sub-bricks, and of those that may share patches with these
+  bool PlanBoxesKnown =
+    false; // of changed sub-bricks, and of those that may share patches with these
   std::optional<DisplacementBounds> AllBounds; // of all points, possibly wider
   std::vector<Box> LastBoxes;                  // valid where Moved
   std::vector<unsigned char> Moved;

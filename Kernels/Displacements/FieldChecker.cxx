@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "FieldScan.h"
+#include "FieldChecker.h"
 
 #include "Lanes.h"
 #include "ParallelFor.h"
@@ -41,8 +41,8 @@ struct RowPoints
 // The bounds of deformed points, of each lane.
 struct ScanResult
 {
-  Lanes Least[3] = { MakeLanes(Far), MakeLanes(Far), MakeLanes(Far) };
-  Lanes Greatest[3] = { MakeLanes(-Far), MakeLanes(-Far), MakeLanes(-Far) };
+  Lanes Min[3] = { MakeLanes(Far), MakeLanes(Far), MakeLanes(Far) };
+  Lanes Max[3] = { MakeLanes(-Far), MakeLanes(-Far), MakeLanes(-Far) };
   Lanes Faults = MakeLanes(0.0); // not 0 after a vector that is not usable
 
   static constexpr double Far = std::numeric_limits<double>::max();
@@ -73,8 +73,8 @@ DEFORMVOLUME_ALWAYS_INLINE void AddPoints(const DisplacementFactors& factors, co
       position[lane] = row.Along[axis][numbers[lane]];
     }
     position = position + row.Row[axis] + row.Plane[axis] + displacement;
-    result.Least[axis] = position < result.Least[axis] ? position : result.Least[axis];
-    result.Greatest[axis] = position > result.Greatest[axis] ? position : result.Greatest[axis];
+    result.Min[axis] = position < result.Min[axis] ? position : result.Min[axis];
+    result.Max[axis] = position > result.Max[axis] ? position : result.Max[axis];
     // Not-a-number is a fault, too.
     result.Faults = Absolute(displacement) <= LargestDisplacement ? result.Faults : MakeLanes(1.0);
   }
@@ -164,8 +164,8 @@ public:
       IndexBounds one;
       for (int axis = 0; axis < 3; ++axis)
       {
-        one.Min[axis] = voxels.Least[axis][lane];
-        one.Max[axis] = voxels.Greatest[axis][lane];
+        one.Min[axis] = voxels.Min[axis][lane];
+        one.Max[axis] = voxels.Max[axis][lane];
       }
       bounds.Add(one); // nothing if there are no voxels
     }
@@ -212,7 +212,7 @@ bool AreVoxelsPoints(const VoxelGrid& voxelGrid, const DisplacementField& field)
   return GetNumberOfPoints(voxelGrid.VertexExtent) > 0;
 }
 
-std::vector<unsigned char> FieldScan::FindChanged(
+std::vector<unsigned char> FieldChecker::FindChanged(
   const DisplacementField& field, const PointRanges* changes) const
 {
   const auto blocksOfPlane = static_cast<std::size_t>(CountBlocksOfPlane(field));
@@ -235,7 +235,7 @@ std::vector<unsigned char> FieldScan::FindChanged(
   return changed;
 }
 
-FieldState FieldScan::Look(
+FieldCheckResult FieldChecker::Look(
   const VoxelGrid& voxelGrid, const DisplacementField& field, const PointRanges* changes)
 {
   const std::vector<unsigned char> changed = this->FindChanged(field, changes);
@@ -255,7 +255,7 @@ FieldState FieldScan::Look(
         }
       }
     });
-  FieldState state;
+  FieldCheckResult state;
   state.IsUsable =
     std::find(this->AreUsable.begin(), this->AreUsable.end(), 0) == this->AreUsable.end();
   for (const IndexBounds& bounds : this->Bounds)

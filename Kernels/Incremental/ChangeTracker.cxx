@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "IncrementalUpdate.h"
+#include "ChangeTracker.h"
 
 #include "ParallelFor.h"
 
@@ -9,8 +9,7 @@
 namespace deformvolume
 {
 
-void IncrementalUpdate::Start(
-  const BrickGrid& bricks, const VoxelGrid& voxelGrid, const Extent& output)
+void ChangeTracker::Start(const BrickGrid& bricks, const VoxelGrid& voxelGrid, const Extent& output)
 {
   this->Bricks = bricks;
   this->SubBricks = bricks.GetSubBricks();
@@ -18,7 +17,7 @@ void IncrementalUpdate::Start(
   if (output != this->OutputExtent || this->Known.size() != subBricks)
   {
     this->Known.assign(subBricks, 0); // boxes are relative to the output
-    this->BoxesKnown = false;
+    this->PlanBoxesKnown = false;
   }
   if (this->Sections.empty())
   {
@@ -39,30 +38,30 @@ void IncrementalUpdate::Start(
   this->Tracking = true;
 }
 
-void IncrementalUpdate::Finish()
+void ChangeTracker::Finish()
 {
   this->Moved.assign(this->SubBricks.GetNumberOfBricks(), 0);
   this->Masked.assign(this->SubBricks.GetNumberOfBricks(), 0);
 }
 
-void IncrementalUpdate::MoveAll(const std::optional<DisplacementBounds>& after)
+void ChangeTracker::MoveAll(const std::optional<DisplacementBounds>& after)
 {
   this->Tracking = false;
   this->Known.assign(this->Known.size(), 0);
-  this->BoxesKnown = false;
+  this->PlanBoxesKnown = false;
   this->AllBounds = after;
 }
 
-void IncrementalUpdate::ForgetMapping()
+void ChangeTracker::InvalidateMapping()
 {
   this->Tracking = false;
   this->Points = this->PointsOfBricks = BrickPoints();
   this->Known.clear();
-  this->BoxesKnown = false;
+  this->PlanBoxesKnown = false;
   this->AllBounds.reset();
 }
 
-bool IncrementalUpdate::HasOnlyInterior(
+bool ChangeTracker::AreVerticesInterior(
   std::size_t subBrick, const unsigned char* state, const Extent& box) const
 {
   const Extent vertices = this->SubBricks.GetVertices(subBrick, 0);
@@ -96,9 +95,9 @@ bool IncrementalUpdate::HasOnlyInterior(
   return true;
 }
 
-Extent IncrementalUpdate::GetMovedVertices() const
+Extent ChangeTracker::GetMovedVertices() const
 {
-  Extent box{ { 0, -1, 0, -1, 0, -1 } };
+  Extent box = EmptyExtent;
   for (std::size_t subBrick = 0; subBrick < this->Moved.size(); ++subBrick)
   {
     if (this->Moved[subBrick])
@@ -109,7 +108,7 @@ Extent IncrementalUpdate::GetMovedVertices() const
   return box;
 }
 
-bool IncrementalUpdate::IsInside(const unsigned char* state, const Extent& box) const
+bool ChangeTracker::IsChangeInterior(const unsigned char* state, const Extent& box) const
 {
   std::atomic<bool> inside{ true };
   ParallelForParts(this->SubBricks.GetNumberOfBricks(), StepSize,
@@ -118,7 +117,7 @@ bool IncrementalUpdate::IsInside(const unsigned char* state, const Extent& box) 
       for (std::size_t subBrick = begin; subBrick < end && inside; ++subBrick)
       {
         if (this->Masked[subBrick] ||
-          (this->Moved[subBrick] && !this->HasOnlyInterior(subBrick, state, box)))
+          (this->Moved[subBrick] && !this->AreVerticesInterior(subBrick, state, box)))
         {
           inside = false;
         }
