@@ -97,7 +97,7 @@ MUTATIONS = {
                     "this->NumberOfSwitchedOff -= CountBits(this->Base[cell] ^ this->Mask[cell]);", "",
                     [("TestMaskEditor", "*")]),
     "filter-bent": ("Kernels/Resampling/PacketWeights.cl", "(FLOATS)(3.2e-5f)", "(FLOATS)(3.2e-7f)", [NARROW]),
-    "mask-halo": ("Kernels/Incremental/ChangeTrackerChanges.cxx", "MaskHalo = 1;", "MaskHalo = 0;", [MASKS]),
+    "mask-halo": ("Kernels/ChangeTracking/ChangeTrackerChanges.cxx", "MaskHalo = 1;", "MaskHalo = 0;", [MASKS]),
     "old-winners": ("Kernels/Output/OutputWinners.cxx",
                     "    FillPatches(launcher, this->Keys, ElementBytes::Of(std::numeric_limits<cl_uint>::max()),\n"
                     "      this->KeySize / sizeof(cl_uint), list, patches.size(), parameters);\n", "", [FOLDS]),
@@ -229,7 +229,7 @@ MUTATIONS = {
     "cut-joined": ("Kernels/DeviceVolume/CutPositions.cl", "if (apart & joined)", "if (false)", [SMOOTH]),
     "cut-multiple": ("Kernels/ActiveTetrahedra/SmoothCrossings.cxx", "!isMultiple && isDivision && isClear",
                      "isDivision && isClear", [CROSSINGS]),
-    "cut-copies": ("Kernels/Incremental/ChangeTrackerBoxes.cxx", "      low -= difference;\n      high += difference;\n",
+    "cut-copies": ("Kernels/ChangeTracking/ChangeTrackerBoxes.cxx", "      low -= difference;\n      high += difference;\n",
                    "", [CUT_PARTS]),
     "cut-halo": ("Kernels/SamplingMesh/BrickGrid.h", "HaloOfCuts = 2;", "HaloOfCuts = 1;", [CUT_PARTS]),
     "fem-history": ("Kernels/FiniteElements/TangentSolver.cxx", "  this->History.ForgetProducts();\n", "",

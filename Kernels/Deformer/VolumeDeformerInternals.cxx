@@ -63,7 +63,7 @@ VolumeDeformer::Internals::Parts::Parts(WorkDevice& device, MemoryBudget& budget
   , Volume(device.GetContext(), device.GetQueue(), voxelGrid, bytesPerVoxel,
       device.GetAllocationLimit(), withLinks)
   , Incremental(device, this->Volume)
-  , Source(device, this->Volume, this->Incremental.GetObserver())
+  , Source(device, this->Volume, this->Incremental.GetTracker())
   , Exact(device, budget, this->Volume, this->Source)
   , Rasterizer(device, budget, this->Volume)
 {
@@ -102,7 +102,7 @@ void VolumeDeformer::Internals::Parts::UpdateFieldBoundary(const DisplacementFie
   }
   this->SetBoundary(boundary, nullptr);
   // The new boundary has other points, so bricks at the boundary change.
-  this->Incremental.GetObserver().InvalidateMapping();
+  this->Incremental.GetTracker().InvalidateMapping();
   last.Dimensions = field.Dimensions;
   last.IndexToField = field.IndexToField;
   last.Extrapolate = field.Extrapolate;

@@ -2,8 +2,8 @@
 #include "DisplacementBuffer.h"
 
 #include "BrickPoints.h"
+#include "ChangeTracker.h"
 #include "DisplacementField.h"
-#include "DisplacementObserver.h"
 #include "Error.h"
 #include "HostMemory.h"
 #include "ParallelFor.h"
@@ -210,7 +210,7 @@ const cl::Buffer& DisplacementBuffer::AllocateForKernel(std::size_t count)
     deformvolume::Grow(this->Device.GetContext(), this->Buffer, 4 * count * sizeof(float));
   }
   std::vector<float>().swap(this->Copy);
-  this->Observer.MoveAll({});
+  this->Tracker.MoveAll({});
   return this->Buffer;
 }
 
@@ -252,7 +252,7 @@ void DisplacementBuffer::Set(const float* displacements, std::size_t count, std:
     this->Buffer =
       cl::Buffer(this->Device.GetContext().GetContext(), CL_MEM_READ_ONLY, floats * sizeof(float));
     this->Copy.resize(isProcessor ? 0 : floats, 0.0F);
-    this->Observer.MoveAll({});
+    this->Tracker.MoveAll({});
     changes = nullptr;
   }
   const SetArguments arguments{ displacements, count, changes, makePoints };
@@ -276,10 +276,10 @@ std::array<std::size_t, 2> DisplacementBuffer::Write(const SetArguments& argumen
 {
   const auto& [displacements, count, changes, makePoints] = arguments;
   const std::vector<std::size_t> words = FindWords(changes, count);
-  bool partly = this->Observer.IsTracking();
+  bool partly = this->Tracker.IsTracking();
   if (partly)
   {
-    const std::size_t most = this->Observer.GetMaxMoved(count);
+    const std::size_t most = this->Tracker.GetMaxMoved(count);
     this->Changed.Clear(count);
     const std::size_t number = MarkChanges(displacements, sent, words, count, most, this->Changed);
     if (number == 0)
@@ -292,15 +292,15 @@ std::array<std::size_t, 2> DisplacementBuffer::Write(const SetArguments& argumen
   {
     const bool areAll = words.size() * WordSize >= count;
     const DisplacementBounds bounds = PadVectors(displacements, words, count, sent);
-    this->Observer.MoveAll(areAll ? std::optional(bounds) : std::nullopt);
+    this->Tracker.MoveAll(areAll ? std::optional(bounds) : std::nullopt);
     return { { 0, count } };
   }
-  if (!this->Observer.HasPoints())
+  if (!this->Tracker.HasPoints())
   {
-    this->Observer.SetPoints(makePoints());
+    this->Tracker.SetPoints(makePoints());
   }
-  this->Observer.MovePoints(this->Changed, sent);
-  this->Observer.AddMoved(PadVectors(displacements, words, count, sent));
+  this->Tracker.MovePoints(this->Changed, sent);
+  this->Tracker.AddMoved(PadVectors(displacements, words, count, sent));
   std::array<std::size_t, 2> changed;
   this->Changed.GetEnds(changed[0], changed[1]);
   return { { changed[0], std::min(changed[1], count) } };

@@ -16,7 +16,7 @@ namespace deformvolume
 {
 
 class BrickPoints;
-class DisplacementObserver;
+class ChangeTracker;
 
 /// Throws Error if a displacement is too large or not finite. displacements: three floats per
 /// point. what: "node" or "point", for the message. changes: points to check; null: all.
@@ -27,20 +27,20 @@ void CheckDisplacements(
 [[noreturn]] void ThrowBadDisplacement(const char* what, std::size_t point);
 
 /// Displacements of points on the device, four floats each. Only the range of the points that have
-/// changed is copied to the device, and the observer is notified of these points.
+/// changed is copied to the device, and the tracker is notified of these points.
 class DisplacementBuffer
 {
 public:
-  DisplacementBuffer(WorkDevice& device, DisplacementObserver& observer)
+  DisplacementBuffer(WorkDevice& device, ChangeTracker& tracker)
     : Device(device)
-    , Observer(observer)
+    , Tracker(tracker)
   {
   }
 
   /// Set the displacements. displacements: three floats per point, already checked. room: least
   /// number of points of the buffer, for meshes that had more nodes before. changes: points that
   /// may have changed since the last call; null: all. makePoints: returns the argument of
-  /// DisplacementObserver::SetPoints().
+  /// ChangeTracker::SetPoints().
   void Set(const float* displacements, std::size_t count, std::size_t room,
     const PointRanges* changes, const std::function<BrickPoints()>& makePoints);
 
@@ -67,12 +67,12 @@ private:
     const PointRanges* Changes;
     const std::function<BrickPoints()>& MakePoints;
   };
-  /// Writes the displacements to `sent` (the mapped buffer, or Copy), and notifies the observer.
+  /// Writes the displacements to `sent` (the mapped buffer, or Copy), and notifies the tracker.
   /// Returns a range that contains all changed points.
   std::array<std::size_t, 2> Write(const SetArguments& arguments, float* sent);
 
   WorkDevice& Device;
-  DisplacementObserver& Observer;
+  ChangeTracker& Tracker;
   cl::Buffer Buffer;
   // A copy of the buffer on the host, for devices with memory of their own. Empty if a kernel has
   // written the buffer.

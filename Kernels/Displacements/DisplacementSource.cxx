@@ -3,8 +3,8 @@
 
 #include "BoxBounds.h"
 #include "BrickPoints.h"
+#include "ChangeTracker.h"
 #include "DeviceVolume.h"
-#include "DisplacementObserver.h"
 #include "Error.h"
 #include "FieldParameters.h"
 #include "HostMemory.h"
@@ -59,12 +59,12 @@ std::array<std::size_t, 2> GetHull(const PointRanges& ranges, std::size_t count)
 } // namespace
 
 DisplacementSource::DisplacementSource(
-  WorkDevice& device, DeviceVolume& volume, DisplacementObserver& observer)
+  WorkDevice& device, DeviceVolume& volume, ChangeTracker& tracker)
   : Device(device)
   , Volume(volume)
-  , Observer(observer)
-  , Nodes(device, observer)
-  , FieldVectors(device, observer)
+  , Tracker(tracker)
+  , Nodes(device, tracker)
+  , FieldVectors(device, tracker)
   , Reading(device)
 {
 }
@@ -110,7 +110,7 @@ void DisplacementSource::SendTetrahedra(
   this->NodesSet = false;
   this->DeviceIsCurrent = false;
   this->ForgetField();
-  this->Observer.InvalidateMapping();
+  this->Tracker.InvalidateMapping();
 }
 
 bool DisplacementSource::HasMesh() const
@@ -254,13 +254,13 @@ void DisplacementSource::ConvertFieldOnDevice(const DisplacementField& field,
     convert(this->FieldVectors.Get(), true);
     if (!this->NotifyOfChanges(*changes, [this] { return Join(this->FindBoundsOfSubBricks()); }))
     {
-      this->Observer.MoveAll({});
+      this->Tracker.MoveAll({});
     }
   }
   catch (...)
   {
     this->ForgetField();
-    this->Observer.MoveAll({});
+    this->Tracker.MoveAll({});
     throw;
   }
 }
@@ -288,7 +288,7 @@ FieldParameters DisplacementSource::PrepareForField(const DisplacementField& fie
   this->NumberOfNodes = static_cast<std::size_t>(GetNumberOfPoints(field));
   if (!this->HasField() || !IsSameMapping(parameters, this->Field))
   {
-    this->Observer.InvalidateMapping();
+    this->Tracker.InvalidateMapping();
     this->Volume.InvalidateState();
   }
   return parameters;
@@ -399,12 +399,12 @@ bool DisplacementSource::NotifyOfChanges(
   {
     count += std::min(range[1], this->NumberOfNodes) - std::min(range[0], this->NumberOfNodes);
   }
-  if (count > this->Observer.GetMaxMoved(this->NumberOfNodes))
+  if (count > this->Tracker.GetMaxMoved(this->NumberOfNodes))
   {
     this->WrittenInPart = false;
     return false;
   }
-  if (!this->Observer.IsTracking() || !this->Observer.HasAllBoxes())
+  if (!this->Tracker.IsTracking() || !this->Tracker.HasAllBoxes())
   {
     return false;
   }
@@ -416,15 +416,15 @@ bool DisplacementSource::NotifyOfChanges(
     {
       changed.AddRange(range[0], std::min(range[1], this->NumberOfNodes));
     }
-    this->Observer.MovePoints(changed, nullptr);
-    this->Observer.AddMoved(after());
+    this->Tracker.MovePoints(changed, nullptr);
+    this->Tracker.AddMoved(after());
   }
   return true;
 }
 
 void DisplacementSource::SetFieldInPlace(const DisplacementField& field)
 {
-  this->Observer.MoveAll({});
+  this->Tracker.MoveAll({});
   this->DeviceIsCurrent = false;
   this->FieldVectors.Clear();
   const BufferInPlace array =
@@ -476,7 +476,7 @@ void DisplacementSource::Forget()
   this->ForgetNodes();
   this->ForgetField();
   this->Reading.Forget();
-  this->Observer.InvalidateMapping();
+  this->Tracker.InvalidateMapping();
 }
 
 const cl::Buffer& DisplacementSource::GetFieldVectors() const

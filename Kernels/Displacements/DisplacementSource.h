@@ -22,7 +22,7 @@ namespace deformvolume
 {
 
 class DeviceVolume;
-class DisplacementObserver;
+class ChangeTracker;
 class WorkDevice;
 struct VolumeChunk;
 
@@ -34,8 +34,8 @@ struct VolumeChunk;
 class DisplacementSource
 {
 public:
-  /// volume: receives the static mapping of the mesh. observer: is notified of changes.
-  DisplacementSource(WorkDevice& device, DeviceVolume& volume, DisplacementObserver& observer);
+  /// volume: receives the static mapping of the mesh. tracker: is notified of changes.
+  DisplacementSource(WorkDevice& device, DeviceVolume& volume, ChangeTracker& tracker);
 
   ///@{
   /// Throw an Error if links or runs do not fit the volume or the number of tetrahedra.
@@ -152,7 +152,7 @@ private:
   void ConvertFieldOnDevice(const DisplacementField& field, const PointRanges* changes,
     const std::function<void(const cl::Buffer&, bool)>& convert);
   const std::vector<DisplacementBounds>& FindBoundsOfSubBricks() const;
-  /// Notifies the observer of changed points. after: computes the bounds of their new
+  /// Notifies the tracker of changed points. after: computes the bounds of their new
   /// displacements. Returns false if all points must count as changed.
   bool NotifyOfChanges(
     const PointRanges& changes, const std::function<DisplacementBounds()>& after);
@@ -161,7 +161,7 @@ private:
 
   WorkDevice& Device;
   DeviceVolume& Volume;
-  DisplacementObserver& Observer;
+  ChangeTracker& Tracker;
 
   cl::Buffer Tetrahedra; // nodes of the tetrahedra, times DEFORMVOLUME_NODE_STRIDE
   std::size_t NumberOfTetrahedra = 0;

@@ -2,8 +2,8 @@
 // The part of DisplacementSource that applies changes of the nodes of tetrahedra.
 #include "DisplacementSource.h"
 
+#include "ChangeTracker.h"
 #include "DeviceVolume.h"
-#include "DisplacementObserver.h"
 #include "Error.h"
 #include "HostMemory.h"
 #include "MeshChecks.h"
@@ -107,10 +107,10 @@ void DisplacementSource::ChangeConnectivity(const Tetrahedron* tetrahedra,
   this->CheckChanges(*changes, numberOfNodes);
   this->SetNumberOfNodes(numberOfNodes);
   std::optional<std::vector<Extent>> boxes;
-  if (this->Observer.HasPoints())
+  if (this->Tracker.HasPoints())
   {
     this->Nodes.WithDisplacements(
-      [&](const float* last) { boxes = this->Observer.ChangeTetrahedra(*changes, last); });
+      [&](const float* last) { boxes = this->Tracker.ChangeTetrahedra(*changes, last); });
   }
   this->SendChanges(*changes);
   if (boxes)
@@ -128,11 +128,11 @@ void DisplacementSource::SetNumberOfNodes(std::size_t numberOfNodes)
 {
   this->MaxNumberOfNodes = std::max(this->MaxNumberOfNodes, numberOfNodes);
   this->Nodes.Grow(numberOfNodes);
-  if (this->Observer.IsTracking())
+  if (this->Tracker.IsTracking())
   {
-    if (!this->Observer.HasPoints())
+    if (!this->Tracker.HasPoints())
     {
-      this->Observer.SetPoints(this->MakeBrickPoints());
+      this->Tracker.SetPoints(this->MakeBrickPoints());
     }
     // Add the bounds of new nodes here. If the displacement of a new node equals the value in the
     // buffer, the node does not count as changed later.
@@ -145,7 +145,7 @@ void DisplacementSource::SetNumberOfNodes(std::size_t numberOfNodes)
           bounds.Add(last, this->NumberOfNodes, numberOfNodes);
         }
       });
-    this->Observer.AddMoved(bounds);
+    this->Tracker.AddMoved(bounds);
   }
   this->NumberOfNodes = numberOfNodes;
 }

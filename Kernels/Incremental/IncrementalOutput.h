@@ -26,8 +26,8 @@ class IncrementalOutput
 public:
   IncrementalOutput(WorkDevice& device, DeviceVolume& volume);
 
-  /// The observer that must be notified of all changes of the displacements.
-  DisplacementObserver& GetObserver() { return this->Changes; }
+  /// The tracker that must be notified of all changes of the displacements.
+  ChangeTracker& GetTracker() { return this->Changes; }
   /// Notes that a mask of cells or of vertices changed in some boxes.
   void ChangeMask(const std::vector<Extent>& boxes, bool ofCells)
   {

@@ -4,10 +4,10 @@
 
 #include "BrickPoints.h"
 #include "DisplacementBounds.h"
-#include "DisplacementObserver.h"
 #include "Extent.h"
 #include "IndexBounds.h"
 #include "PointSet.h"
+#include "Tetrahedron.h"
 #include "VoxelGrid.h"
 
 #include <cstdint>
@@ -33,7 +33,7 @@ namespace deformvolume
 /// only the changed sub-bricks are resampled. Their cells fill the same space as before, between
 /// cells that do not change, so they own the same voxels. Inverted cells are an exception, which
 /// the counts of writes reveal.
-class ChangeTracker : public DisplacementObserver
+class ChangeTracker
 {
 public:
   /// The parts to update.
@@ -57,22 +57,36 @@ public:
   /// Records that the last output was updated.
   void Finish();
 
-  ///@{
-  /// See DisplacementObserver. Changes are tracked as long as there is a last output. If all points
-  /// change, the last output is discarded. The bounds of all points only grow until all points
-  /// change.
-  bool IsTracking() const override { return this->Tracking; }
-  std::size_t GetMaxMoved(std::size_t numberOfPoints) const override;
-  bool HasPoints() const override { return !this->Points.IsEmpty(); }
-  void SetPoints(BrickPoints&& points) override;
-  void InvalidateMapping() override;
-  bool HasAllBoxes() const override;
-  void MovePoints(const PointSet& changed, const float* last) override;
+  /// Whether changes are tracked: as long as there is a last output.
+  bool IsTracking() const { return this->Tracking; }
+  /// Returns the largest number of changed points, of numberOfPoints, that are worth tracking. If
+  /// more points change, call MoveAll().
+  std::size_t GetMaxMoved(std::size_t numberOfPoints) const;
+
+  /// Whether the points that move each sub-brick are known, as MovePoints() needs. False at first
+  /// and after InvalidateMapping().
+  bool HasPoints() const { return !this->Points.IsEmpty(); }
+  /// Set the points that move each sub-brick.
+  void SetPoints(BrickPoints&& points);
+  /// Call this if the mapping from points to vertices has changed.
+  void InvalidateMapping();
+
+  /// Whether the boxes of all sub-bricks are known. If so, MovePoints() does not need the
+  /// displacements before the change, and may be called after it.
+  bool HasAllBoxes() const;
+  /// Records that points will change. last: displacements before the change, four floats per point;
+  /// null: the points have already changed (HasAllBoxes()).
+  void MovePoints(const PointSet& changed, const float* last);
+  /// Records that the nodes of tetrahedra will change. last: as in MovePoints(). Returns boxes that
+  /// contain all vertices in these tetrahedra; empty if they are not known.
   std::optional<std::vector<Extent>> ChangeTetrahedra(
-    const std::vector<TetrahedronChange>& changes, const float* last) override;
-  void AddMoved(const DisplacementBounds& after) override;
-  void MoveAll(const std::optional<DisplacementBounds>& after) override;
-  ///@}
+    const std::vector<TetrahedronChange>& changes, const float* last);
+  /// Records that points have changed. after: bounds of the new displacements of at least these
+  /// points. The bounds of all points only grow until all points change.
+  void AddMoved(const DisplacementBounds& after);
+  /// Records that all points may have changed, and discards the last output. after: bounds of all
+  /// new displacements, if they are known.
+  void MoveAll(const std::optional<DisplacementBounds>& after);
 
   /// Returns a box of the vertices of all sub-bricks with moved points, in local indices.
   Extent GetMovedVertices() const;
