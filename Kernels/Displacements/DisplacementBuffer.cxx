@@ -207,7 +207,7 @@ const cl::Buffer& DisplacementBuffer::AllocateForKernel(std::size_t count)
   if (!isWritable || this->GetNumberOfPoints() < count)
   {
     this->Clear();
-    deformvolume::Grow(this->Device.GetContext(), this->Buffer, 4 * count * sizeof(float));
+    deformvolume::Reserve(this->Device.GetContext(), this->Buffer, 4 * count * sizeof(float));
   }
   std::vector<float>().swap(this->Copy);
   this->Tracker.MoveAll({});
