@@ -231,7 +231,7 @@ bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& 
   std::optional<PointRanges> written =
     isSame ? FindWritten(array, array, this->TimeInPlace) : std::nullopt;
   const FieldCheckResult state =
-    this->ScanInPlace.Look(voxelGrid, field, written ? &*written : nullptr);
+    this->ScanInPlace.Check(voxelGrid, field, written ? &*written : nullptr);
   if (!state.IsUsable)
   {
     return false; // SetVectors() throws an Error that says what is wrong

@@ -235,7 +235,7 @@ std::vector<unsigned char> FieldChecker::FindChanged(
   return changed;
 }
 
-FieldCheckResult FieldChecker::Look(
+FieldCheckResult FieldChecker::Check(
   const VoxelGrid& voxelGrid, const DisplacementField& field, const PointRanges* changes)
 {
   const std::vector<unsigned char> changed = this->FindChanged(field, changes);

@@ -33,7 +33,7 @@ class DEFORMVOLUME_EXPORT FieldChecker
 public:
   /// Checks the vectors. changes: points whose vectors have changed since the last call, if nothing
   /// else has changed; null: any vector may have changed.
-  FieldCheckResult Look(const VoxelGrid& voxelGrid, const DisplacementField& field,
+  FieldCheckResult Check(const VoxelGrid& voxelGrid, const DisplacementField& field,
     const PointRanges* changes = nullptr);
 
 private:

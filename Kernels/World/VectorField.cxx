@@ -251,7 +251,7 @@ std::optional<IndexBounds> VectorField::FindSharedBounds(const OutsideVoxels& ou
     changes = this->InPlace->GetChanges(this->ScannedRevision);
   }
   const FieldCheckResult state =
-    this->Scan.Look(voxelGrid, this->Get(outside), changes ? &*changes : nullptr);
+    this->Scan.Check(voxelGrid, this->Get(outside), changes ? &*changes : nullptr);
   this->ScannedRevision = this->Revision;
   return state.IsUsable ? std::optional<IndexBounds>(state.Bounds) : std::nullopt;
 }

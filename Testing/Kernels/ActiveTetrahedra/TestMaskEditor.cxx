@@ -104,7 +104,7 @@ int CountActive(reference::Mask mask)
 TEST(MaskEditor, MisuseIsAnError)
 {
   EXPECT_THROW(MaskEditor(Extent{ { 0, 5, 0, 5, 3, 3 } }), Error);
-  EXPECT_THROW(MaskEditor(EmptyExtent), Error);
+  EXPECT_THROW(MaskEditor{ EmptyExtent }, Error);
   MaskEditor editor(Extent{ { 0, 8, 0, 8, 0, 9 } });
   EXPECT_FALSE(editor.Undo());
   EXPECT_FALSE(editor.Redo());

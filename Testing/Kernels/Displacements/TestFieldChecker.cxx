@@ -102,13 +102,13 @@ TEST(FieldChecker, BoundsAreThoseOfAllVoxels)
     Case one(random);
     ASSERT_TRUE(AreVoxelsPoints(one.Grid, one.Field));
     FieldChecker scan;
-    const FieldCheckResult state = scan.Look(one.Grid, one.Field);
+    const FieldCheckResult state = scan.Check(one.Grid, one.Field);
     const IndexBounds wanted = one.FindBounds();
     EXPECT_TRUE(state.IsUsable);
     EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(state.Bounds.Min - wanted.Min), glm::dvec3(1e-9))));
     EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(state.Bounds.Max - wanted.Max), glm::dvec3(1e-9))));
     UseWideLanes(false);
-    EXPECT_TRUE(IsEqual(FieldChecker().Look(one.Grid, one.Field), state)) << "without AVX2";
+    EXPECT_TRUE(IsEqual(FieldChecker().Check(one.Grid, one.Field), state)) << "without AVX2";
     UseWideLanes(isWide);
 
     // A few vectors change.
@@ -119,8 +119,8 @@ TEST(FieldChecker, BoundsAreThoseOfAllVoxels)
       one.Vectors[3 * point + random() % 3] *= -2.0F;
       changes.push_back({ { point, point + 1 } });
     }
-    EXPECT_TRUE(
-      IsEqual(scan.Look(one.Grid, one.Field, &changes), FieldChecker().Look(one.Grid, one.Field)));
+    EXPECT_TRUE(IsEqual(
+      scan.Check(one.Grid, one.Field, &changes), FieldChecker().Check(one.Grid, one.Field)));
   }
 }
 
@@ -133,24 +133,24 @@ TEST(FieldChecker, UnusableVectorsAreFound)
     SCOPED_TRACE(i);
     Case one(random);
     FieldChecker scan;
-    const FieldCheckResult before = scan.Look(one.Grid, one.Field);
+    const FieldCheckResult before = scan.Check(one.Grid, one.Field);
     const std::size_t value = random() % one.Vectors.size();
     const float was = one.Vectors[value];
     const PointRanges change{ { { value / 3, value / 3 + 1 } } };
     for (const float bad : { std::nanf(""), infinity, -infinity, 3e38F })
     {
       one.Vectors[value] = bad;
-      EXPECT_FALSE(scan.Look(one.Grid, one.Field, &change).IsUsable) << bad;
-      EXPECT_FALSE(FieldChecker().Look(one.Grid, one.Field).IsUsable) << bad;
+      EXPECT_FALSE(scan.Check(one.Grid, one.Field, &change).IsUsable) << bad;
+      EXPECT_FALSE(FieldChecker().Check(one.Grid, one.Field).IsUsable) << bad;
     }
     one.Vectors[value] = was;
-    EXPECT_TRUE(IsEqual(scan.Look(one.Grid, one.Field, &change), before));
+    EXPECT_TRUE(IsEqual(scan.Check(one.Grid, one.Field, &change), before));
   }
   // The largest usable displacement.
   Case one(random);
   one.Field.ToDisplacement = DisplacementField().ToDisplacement;
   one.Vectors.back() = static_cast<float>(LargestDisplacement);
-  EXPECT_TRUE(FieldChecker().Look(one.Grid, one.Field).IsUsable);
+  EXPECT_TRUE(FieldChecker().Check(one.Grid, one.Field).IsUsable);
   one.Vectors.back() = std::nextafter(one.Vectors.back(), infinity);
-  EXPECT_FALSE(FieldChecker().Look(one.Grid, one.Field).IsUsable);
+  EXPECT_FALSE(FieldChecker().Check(one.Grid, one.Field).IsUsable);
 }

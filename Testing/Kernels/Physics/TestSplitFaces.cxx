@@ -39,7 +39,7 @@ TEST(SplitFaces, NoPieceOnBothSides)
     ExpectSound(body, split);
     EXPECT_GT(split.NumberOfFaces, 0);
     const ElasticBody after = Apply(body, split);
-    const BodyComponents pieces = FindPieces(after);
+    const BodyComponents pieces = FindBodyComponents(after);
     std::vector<int> sides(static_cast<std::size_t>(pieces.NumberOfPieces), 0);
     for (const Tetrahedron& t : after.Tetrahedra)
     {

@@ -64,7 +64,7 @@ inline Mesh MakeLattice(const glm::ivec3& nodes, const glm::dvec3& min, const gl
     {
       for (int x = 0; x + 1 < nodes.x; ++x)
       {
-        for (const auto& corners : FiveTetrahedra)
+        for (const auto& corners : deformvolume::FiveTetrahedra)
         {
           deformvolume::Tetrahedron tetrahedron;
           for (int node = 0; node < 4; ++node)
