@@ -2,6 +2,8 @@
 #ifndef DeformVolumeVectorArray_h
 #define DeformVolumeVectorArray_h
 
+#include "VectorConversion.h"
+
 #include "vtkType.h"
 
 #include <glm/vec3.hpp>
@@ -15,10 +17,6 @@ class vtkDataSet;
 
 namespace deformvolume
 {
-
-/// Receives the vectors with the indices first to first + count - 1. Called in parallel.
-using VectorTaker =
-  std::function<void(vtkIdType first, const glm::dvec3* vectors, vtkIdType count)>;
 
 /// Receives the index of a tuple that is not finite. Called in parallel.
 using FaultTaker = std::function<void(vtkIdType tuple)>;

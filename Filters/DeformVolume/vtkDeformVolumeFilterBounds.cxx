@@ -99,10 +99,9 @@ IndexBounds vtkDeformVolumeFilter::vtkInternals::ComputeBounds(
   const deformvolume::OutsideVoxels outside = this->GetOutside();
   if (this->State->Deformation.IsField() && this->State->Deformation.GetDeviceVectors())
   {
-    deformvolume::DisplacementField field = this->State->Deformation.GetField(outside);
-    field.ToDisplacement = this->State->Deformation.GetDeviceMatrix();
-    const std::optional<IndexBounds> bounds = deformvolume::FindDeformedBounds(
-      voxelGrid, field, *this->State->Deformation.GetDeviceVectors());
+    const std::optional<IndexBounds> bounds =
+      deformvolume::FindDeformedBounds(voxelGrid, this->State->Deformation.GetFieldShape(outside),
+        *this->State->Deformation.GetDeviceVectors());
     if (bounds)
     {
       return *bounds;

@@ -148,7 +148,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfSplits(vtkImageData* volume)
   }
   deformvolume::Extent voxels;
   volume->GetExtent(voxels.data());
-  this->State->Splits.Update(mesh.GetMeshAtRest(), mesh.GetRestMesh().GetConnectivityVersion());
+  this->State->Splits.Update(mesh.GetMeshAtRest());
   const std::string text = this->State->Splits.Describe(mesh.GetNodeDisplacements(), voxels);
   // The search for hidden voxels takes long.
   const bool warns = !text.empty() && !volume->HasAnyBlankPoints() && !volume->HasAnyBlankCells();

@@ -2,19 +2,12 @@
 #include "Deformation.h"
 
 #include "Error.h"
-#include "ParallelFor.h"
 #include "PointDifferences.h"
 #include "VectorArray.h"
-#include "VectorConversion.h"
 
 #include "vtkDataArray.h"
 #include "vtkImageData.h"
 #include "vtkUnstructuredGrid.h"
-
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <cstring>
 
 namespace deformvolume
 {
@@ -82,7 +75,8 @@ void Deformation::ReadMesh(const DeformationSource& source)
     this->Memories.clear();
   }
   this->MemoriesAreOfPoints = ofPoints;
-  this->SetVectors(
+  ++this->VectorsVersion;
+  this->ReplaceVectors(
     GetNumberOfNodes(shape),
     [&](const VectorTaker& take)
     {
@@ -133,93 +127,17 @@ bool Deformation::HasSameUnits(const DeformationSource& source) const
 
 PointRanges Deformation::GetChanges(std::uint64_t version) const
 {
-  PointRanges changes;
-  if (this->FieldInPlace.Owner && version == this->VectorsVersion)
+  if (!this->FieldInPlace.Owner)
   {
-    return changes;
+    return IndexDeformation::GetChanges(version);
   }
-  if (this->FieldInPlace.Owner && version == this->VersionBeforeChanges)
+  if (version == this->VectorsVersion)
   {
-    return this->ChangesInPlace;
+    return {};
   }
-  if (this->FieldInPlace.Owner)
-  {
-    return { { { 0, static_cast<std::size_t>(GetNumberOfPoints(this->FieldInPlace)) } } };
-  }
-  const std::size_t count = this->Vectors.size() / 3;
-  for (std::size_t block = 0; block < this->BlockVersions.size(); ++block)
-  {
-    if (this->BlockVersions[block] <= version)
-    {
-      continue;
-    }
-    const std::size_t begin = block * PointsPerBlock;
-    if (changes.empty() || changes.back()[1] != begin)
-    {
-      changes.push_back({ { begin, begin } });
-    }
-    changes.back()[1] = std::min(begin + PointsPerBlock, count);
-  }
-  return changes;
-}
-
-void Deformation::SetVectors(std::size_t count, const VectorSource& read, double factor,
-  const DeformationSource& source, const DerivedNodes* derived)
-{
-  ++this->VectorsVersion;
-  this->ReplaceVectors(count, read, factor, source, derived);
-}
-
-void Deformation::ResizeVectors(std::size_t count, std::size_t blocks)
-{
-  if (!this->VectorsAreWhole)
-  {
-    this->BlockVersions.clear();
-  }
-  if (this->Vectors.size() != 3 * count)
-  {
-    // A block with another number of points has changed.
-    const std::size_t same = std::min(this->Vectors.size() / 3, count) / PointsPerBlock;
-    this->BlockVersions.resize(std::min(this->BlockVersions.size(), same));
-    this->Vectors.resize(3 * count);
-  }
-  this->BlockVersions.resize(blocks, this->VectorsVersion);
-}
-
-void Deformation::UpdateDerived(
-  const DerivedNodes& derived, std::size_t count, std::vector<std::atomic<bool>>& changed)
-{
-  std::atomic<bool> tooFar{ false };
-  ParallelForParts(derived.GetCount(), PointsPerBlock,
-    [&](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        const glm::vec3 sum(derived.Sum(i,
-          [&](std::int32_t node)
-          {
-            const float* vector = this->Vectors.data() + 3 * static_cast<std::size_t>(node);
-            return glm::dvec3(vector[0], vector[1], vector[2]);
-          }));
-        float* last = this->Vectors.data() + 3 * (count + i);
-        if (std::memcmp(last, &sum.x, 3 * sizeof(float)) != 0)
-        {
-          std::copy_n(&sum.x, 3, last);
-          changed[(count + i) / PointsPerBlock].store(true, std::memory_order_relaxed);
-        }
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          if (!(std::abs(sum[axis]) <= LargestDisplacement))
-          {
-            tooFar = true;
-          }
-        }
-      }
-    });
-  if (tooFar)
-  {
-    ThrowTooFar();
-  }
+  return version == this->VersionBeforeChanges
+    ? this->ChangesInPlace
+    : PointRanges{ { { 0, static_cast<std::size_t>(GetNumberOfPoints(this->FieldInPlace)) } } };
 }
 
 void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read, double factor,
@@ -228,65 +146,17 @@ void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read, do
   // If a call below throws, the vectors belong to no source.
   this->VectorsStamp.clear();
   this->FieldInPlace = DisplacementField();
-  const std::uint64_t version = this->VectorsVersion;
-  const std::size_t all = count + (derived ? derived->GetCount() : 0);
-  const std::size_t blocks = (all + PointsPerBlock - 1) / PointsPerBlock;
   if (!this->VectorsAreWhole || !this->HasSameUnits(source))
   {
     this->Memories.clear();
   }
-  this->ResizeVectors(all, blocks);
-  this->VectorsAreWhole = false;
-  const glm::dmat3 toDisplacement = GetToDisplacement(source, factor);
-  std::vector<std::atomic<bool>> changed(blocks);
-  this->Faults.Resize(count);
-  read(
-    [&](vtkIdType first, const glm::dvec3* vectors, vtkIdType number)
-    {
-      this->Faults.Clear(first, number);
-      std::array<float, 3 * PointsPerBlock> displacements;
-      auto point = static_cast<std::size_t>(first);
-      const std::size_t end = point + static_cast<std::size_t>(number);
-      while (point < end)
-      {
-        const std::size_t block = point / PointsPerBlock;
-        const std::size_t some = std::min(end, (block + 1) * PointsPerBlock) - point;
-        const bool areNear = ConvertVectors(toDisplacement, vectors, some, displacements.data());
-        for (std::size_t i = 0; i < some && !areNear; ++i)
-        {
-          if (!ConvertVectors(toDisplacement, vectors + i, 1, &displacements[3 * i]))
-          {
-            std::fill_n(&displacements[3 * i], 3, 0.0F);
-            this->Faults.Mark(static_cast<vtkIdType>(point + i), NodeFaults::TooFar);
-          }
-        }
-        float* last = this->Vectors.data() + 3 * point;
-        if (std::memcmp(last, displacements.data(), 3 * some * sizeof(float)) != 0)
-        {
-          std::copy_n(displacements.begin(), 3 * some, last);
-          changed[block].store(true, std::memory_order_relaxed);
-        }
-        vectors += some;
-        point += some;
-      }
-    });
-  if (all > count)
-  {
-    this->UpdateDerived(*derived, count, changed);
-  }
-  for (std::size_t block = 0; block < blocks; ++block)
-  {
-    if (changed[block])
-    {
-      this->BlockVersions[block] = version;
-    }
-  }
-  this->VectorsAreWhole = true;
+  this->SetDisplacements(count, read, GetToDisplacement(source, factor), derived);
 }
 
 void Deformation::RememberVectors(const Stamp& stamp, const DeformationSource& source, bool field)
 {
   this->Field = field;
+  this->Inverse = source.FieldIsInverse;
   this->VectorsStamp = stamp;
   this->VectorsSource = source;
   // The source is only compared later. Do not keep pointers and functions.

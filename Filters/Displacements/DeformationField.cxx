@@ -38,14 +38,10 @@ constexpr vtkIdType MinPointsInPlace = vtkIdType{ 1 } << 18;
 
 DisplacementField Deformation::GetField(const OutsideVoxels& outside) const
 {
-  DisplacementField field = this->FieldInPlace;
-  if (!field.Owner)
-  {
-    field.Dimensions = this->FieldDimensions;
-    field.Vectors = this->Vectors.data();
-    field.IndexToField = this->IndexToField;
-  }
-  SetOutside(outside, this->FieldSpacing, field);
+  DisplacementField field = this->GetFieldShape(outside);
+  field.Owner = this->FieldInPlace.Owner;
+  field.Vectors = field.Owner ? this->FieldInPlace.Vectors : this->Vectors.data();
+  field.ToDisplacement = this->FieldInPlace.ToDisplacement;
   return field;
 }
 
@@ -116,7 +112,8 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   if (!areDefined || !this->UseFieldInPlace(array, source))
   {
     this->Faults.Reset();
-    this->SetVectors(
+    ++this->VectorsVersion;
+    this->ReplaceVectors(
       static_cast<std::size_t>(array->GetNumberOfTuples()),
       [&](const VectorTaker& take)
       {
@@ -215,11 +212,7 @@ bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& 
   field.Dimensions = this->FieldDimensions;
   field.Vectors = floats;
   field.IndexToField = this->IndexToField;
-  const glm::dmat3 transform = GetToDisplacement(source, source.DisplacementScale);
-  for (int i = 0; i < 9; ++i)
-  {
-    field.ToDisplacement[i] = transform[i % 3][i / 3];
-  }
+  field.ToDisplacement = GetRows(GetToDisplacement(source, source.DisplacementScale));
   if (!AreVoxelsPoints(voxelGrid, field))
   {
     return false;
@@ -234,7 +227,7 @@ bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& 
     this->ScanInPlace.Check(voxelGrid, field, written ? &*written : nullptr);
   if (!state.IsUsable)
   {
-    return false; // SetVectors() throws an Error that says what is wrong
+    return false; // ReplaceVectors() throws an Error that says what is wrong
   }
   this->ArrayInPlace = array;
   this->TimeInPlace = array->GetMTime();

@@ -33,11 +33,7 @@ bool Deformation::UseVectorsOnDevice(
   this->ArrayOnDevice = vectors;
   this->FactorOnDevice = factor;
   this->IsOnHost = false;
-  const glm::dmat3 transform = deformvolume::GetToDisplacement(source, factor);
-  for (int i = 0; i < 9; ++i)
-  {
-    this->MatrixOnDevice[i] = transform[i % 3][i / 3];
-  }
+  this->MatrixOnDevice = GetRows(GetToDisplacement(source, factor));
   ++this->VectorsVersion;
   return true;
 }

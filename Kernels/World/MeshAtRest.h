@@ -24,6 +24,8 @@ struct MeshAtRest
   const void* Owner;
   std::uint64_t ShapeVersion;
   ///@}
+  /// Changes if the shape, the nodes of a tetrahedron or the number of nodes changes.
+  std::uint64_t ConnectivityVersion;
 };
 
 } // namespace deformvolume

@@ -13,16 +13,14 @@
 namespace deformvolume
 {
 
-void SplitNodes::Update(const MeshAtRest& mesh, std::uint64_t connectivity)
+void SplitNodes::Update(const MeshAtRest& mesh)
 {
-  if (this->Owner == mesh.Owner && this->ShapeVersion == mesh.ShapeVersion &&
-    this->Connectivity == connectivity)
+  if (this->Owner == mesh.Owner && this->Connectivity == mesh.ConnectivityVersion)
   {
     return;
   }
   this->Owner = mesh.Owner;
-  this->ShapeVersion = mesh.ShapeVersion;
-  this->Connectivity = connectivity;
+  this->Connectivity = mesh.ConnectivityVersion;
   this->Pairs.clear();
   const std::vector<std::int32_t> lowest = FindCoincidentPoints(mesh.Points);
   constexpr std::int32_t unused = -1;

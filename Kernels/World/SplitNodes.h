@@ -20,9 +20,8 @@ struct MeshAtRest;
 class DEFORMVOLUME_EXPORT SplitNodes
 {
 public:
-  /// Finds the nodes, unless this is the mesh of the last call. connectivity: a number that changes
-  /// with the tetrahedra.
-  void Update(const MeshAtRest& mesh, std::uint64_t connectivity);
+  /// Finds the nodes, unless this is the mesh of the last call.
+  void Update(const MeshAtRest& mesh);
   /// Returns the beginning of a warning if such nodes move apart by more than an output voxel, so
   /// that the volume is stretched over a gap; otherwise "". displacements: three floats per node,
   /// in output voxels. voxels: those of the volume. Splits beside them do not count.
@@ -38,7 +37,6 @@ private:
   };
   std::vector<Pair> Pairs;
   const void* Owner = nullptr;
-  std::uint64_t ShapeVersion = 0;
   std::uint64_t Connectivity = 0;
 };
 

@@ -9,7 +9,10 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 
 namespace deformvolume
 {
@@ -19,6 +22,21 @@ namespace deformvolume
 /// the same displacements.
 DEFORMVOLUME_EXPORT glm::dmat3 GetToDisplacement(
   const ImageGeometry& volume, const OutputMap& toOutput, double factor);
+
+/// Returns the elements of a matrix in row-major order.
+inline std::array<double, 9> GetRows(const glm::dmat3& matrix)
+{
+  std::array<double, 9> rows;
+  for (int i = 0; i < 9; ++i)
+  {
+    rows[static_cast<std::size_t>(i)] = matrix[i % 3][i / 3];
+  }
+  return rows;
+}
+
+/// Receives the vectors with the indices first to first + count - 1. Called in parallel.
+using VectorTaker =
+  std::function<void(std::int64_t first, const glm::dvec3* vectors, std::int64_t count)>;
 
 /// Throws an Error that says that a displacement is over LargestDisplacement.
 [[noreturn]] DEFORMVOLUME_EXPORT void ThrowTooFar();

@@ -5,10 +5,10 @@
 #include "FieldGeometry.h"
 #include "ParallelFor.h"
 #include "VectorBounds.h"
-#include "VectorConversion.h"
 
 #include <glm/common.hpp>
 
+#include <array>
 #include <atomic>
 
 namespace deformvolume
@@ -47,7 +47,8 @@ void VectorField::Replace(const ImageGeometry& grid, const VectorView& vectors, 
       std::to_string(vectors.Count) + " vectors. Give one vector for each point.");
   }
   this->Grid = grid;
-  this->Vectors = vectors;
+  this->FieldSpacing = glm::abs(grid.Spacing);
+  this->WorldVectors = vectors;
   this->Inverse = isInverse;
   this->Shared = shared;
   this->IsOld = true;
@@ -75,11 +76,12 @@ void VectorField::Update(const ImageGeometry& volume, const OutputMap& toOutput)
     return;
   }
   this->IsOld = true; // in case of an exception
-  if (!isSame || !this->InPlace)
+  ++this->VectorsVersion;
+  if (!isSame || !this->OnDevice)
   {
     this->Locate(volume, toOutput);
   }
-  if (!this->InPlace)
+  if (!this->OnDevice)
   {
     this->Convert(volume, toOutput);
   }
@@ -87,7 +89,6 @@ void VectorField::Update(const ImageGeometry& volume, const OutputMap& toOutput)
   this->Volume = volume;
   this->ToOutput = toOutput;
   this->Revision = revision;
-  ++this->Version;
 }
 
 void VectorField::Locate(const ImageGeometry& volume, const OutputMap& toOutput)
@@ -95,20 +96,17 @@ void VectorField::Locate(const ImageGeometry& volume, const OutputMap& toOutput)
   const Extent& points = this->Grid.PointExtent;
   for (int axis = 0; axis < 3; ++axis)
   {
-    this->Dimensions[static_cast<std::size_t>(axis)] = static_cast<int>(GetSize(points, axis));
+    this->FieldDimensions[static_cast<std::size_t>(axis)] = static_cast<int>(GetSize(points, axis));
   }
   this->IndexToField = GetIndexToField(this->Grid, volume, this->Inverse ? &toOutput : nullptr);
-  this->InPlace.reset();
+  this->OnDevice.reset();
   this->ScannedRevision = 0;
-  if (this->Shared && GetFieldStride(volume.PointExtent, this->IndexToField, this->Dimensions) == 1)
+  if (this->Shared &&
+    GetFieldStride(volume.PointExtent, this->IndexToField, this->FieldDimensions) == 1)
   {
-    const glm::dmat3 transform = GetToDisplacement(volume, toOutput, 1.0);
-    for (std::size_t i = 0; i < 9; ++i)
-    {
-      this->ToDisplacement[i] = transform[static_cast<int>(i % 3)][static_cast<int>(i / 3)];
-    }
-    this->InPlace = this->Shared;
-    std::vector<float>().swap(this->Displacements);
+    this->MatrixOnDevice = GetRows(GetToDisplacement(volume, toOutput, 1.0));
+    this->OnDevice = this->Shared;
+    std::vector<float>().swap(this->Vectors);
   }
 }
 
@@ -116,71 +114,72 @@ void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput
 {
   if (this->Shared)
   {
-    this->Vectors.Data = this->Shared->Read();
+    this->WorldVectors.Data = this->Shared->Read();
   }
   std::vector<std::size_t> taken;
   if (!this->Inverse)
   {
     taken = this->TakeVoxels(volume.PointExtent);
   }
-  const std::size_t count = taken.empty() ? this->Vectors.Count : taken.size();
-  const glm::dmat3 toDisplacement = GetToDisplacement(volume, toOutput, 1.0);
-  this->Displacements.resize(3 * count);
-  std::atomic<std::size_t> notFinite{ this->Vectors.Count };
-  std::atomic<bool> tooFar{ false };
-  ParallelForParts(count, VectorsPerPart,
-    [&](std::size_t begin, std::size_t end)
+  const std::size_t count = taken.empty() ? this->WorldVectors.Count : taken.size();
+  this->Faults.Reset();
+  this->SetDisplacements(
+    count,
+    [&](const VectorTaker& take)
     {
-      std::array<glm::dvec3, VectorsPerPart> vectors;
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        const std::size_t point = taken.empty() ? i : taken[i];
-        vectors[i - begin] = this->Vectors.Get(point);
-        if (!IsFiniteVector(vectors[i - begin]))
+      std::atomic<std::size_t> notFinite{ this->WorldVectors.Count };
+      ParallelForParts(count, VectorsPerPart,
+        [&](std::size_t begin, std::size_t end)
         {
-          Lower(notFinite, point);
-        }
-      }
-      if (!ConvertVectors(
-            toDisplacement, vectors.data(), end - begin, &this->Displacements[3 * begin]))
+          std::array<glm::dvec3, VectorsPerPart> vectors;
+          for (std::size_t i = begin; i < end; ++i)
+          {
+            const std::size_t point = taken.empty() ? i : taken[i];
+            vectors[i - begin] = this->WorldVectors.Get(point);
+            if (!IsFiniteVector(vectors[i - begin]))
+            {
+              Lower(notFinite, point);
+            }
+          }
+          take(static_cast<std::int64_t>(begin), vectors.data(),
+            static_cast<std::int64_t>(end - begin));
+        });
+      CheckFinite(notFinite, this->WorldVectors.Count);
+      if (this->Faults.MayHaveAny())
       {
-        tooFar = true;
+        ThrowTooFar();
       }
-    });
-  CheckFinite(notFinite, this->Vectors.Count);
-  if (tooFar)
-  {
-    ThrowTooFar();
-  }
+    },
+    GetToDisplacement(volume, toOutput, 1.0));
 }
 
 WorldField VectorField::GetWorldField()
 {
   if (this->Shared)
   {
-    this->Vectors.Data = this->Shared->Read();
+    this->WorldVectors.Data = this->Shared->Read();
   }
-  std::atomic<std::size_t> notFinite{ this->Vectors.Count };
-  ParallelForParts(this->Vectors.Count, VectorsPerPart,
+  std::atomic<std::size_t> notFinite{ this->WorldVectors.Count };
+  ParallelForParts(this->WorldVectors.Count, VectorsPerPart,
     [&](std::size_t begin, std::size_t end)
     {
       for (std::size_t i = begin; i < end; ++i)
       {
-        if (!IsFiniteVector(this->Vectors.Get(i)))
+        if (!IsFiniteVector(this->WorldVectors.Get(i)))
         {
           Lower(notFinite, i);
         }
       }
     });
-  CheckFinite(notFinite, this->Vectors.Count);
+  CheckFinite(notFinite, this->WorldVectors.Count);
   WorldField field = MakeWorldField(this->Grid);
-  if (this->Vectors.AreDoubles)
+  if (this->WorldVectors.AreDoubles)
   {
-    field.Doubles = static_cast<const double*>(this->Vectors.Data);
+    field.Doubles = static_cast<const double*>(this->WorldVectors.Data);
   }
   else
   {
-    field.Floats = static_cast<const float*>(this->Vectors.Data);
+    field.Floats = static_cast<const float*>(this->WorldVectors.Data);
   }
   return field;
 }
@@ -188,7 +187,7 @@ WorldField VectorField::GetWorldField()
 std::vector<std::size_t> VectorField::TakeVoxels(const Extent& voxels)
 {
   std::vector<std::size_t> taken;
-  const int stride = GetFieldStride(voxels, this->IndexToField, this->Dimensions);
+  const int stride = GetFieldStride(voxels, this->IndexToField, this->FieldDimensions);
   if (stride == 1)
   {
     return taken;
@@ -202,56 +201,36 @@ std::vector<std::size_t> VectorField::TakeVoxels(const Extent& voxels)
   ForEachPoint(voxels,
     [&](int x, int y, int z)
     {
-      const std::int64_t row = get(2, z) * this->Dimensions[1] + get(1, y);
-      taken.push_back(static_cast<std::size_t>(row * this->Dimensions[0] + get(0, x)));
+      const std::int64_t row = get(2, z) * this->FieldDimensions[1] + get(1, y);
+      taken.push_back(static_cast<std::size_t>(row * this->FieldDimensions[0] + get(0, x)));
     });
   for (std::size_t axis = 0; axis < 3; ++axis)
   {
-    this->Dimensions[axis] = static_cast<int>(GetSize(voxels, static_cast<int>(axis)));
+    this->FieldDimensions[axis] = static_cast<int>(GetSize(voxels, static_cast<int>(axis)));
     this->IndexToField[5 * axis] = 1.0;
     this->IndexToField[4 * axis + 3] = -voxels[2 * axis];
   }
   return taken;
 }
 
-DisplacementField VectorField::GetShape(const OutsideVoxels& outside) const
-{
-  DisplacementField field;
-  field.Dimensions = this->Dimensions;
-  field.IndexToField = this->IndexToField;
-  if (this->InPlace)
-  {
-    field.ToDisplacement = this->ToDisplacement;
-  }
-  SetOutside(outside, glm::abs(this->Grid.Spacing), field);
-  return field;
-}
-
-DisplacementField VectorField::Get(const OutsideVoxels& outside) const
-{
-  DisplacementField field = this->GetShape(outside);
-  field.Vectors = this->InPlace ? this->InPlace->Read() : this->Displacements.data();
-  return field;
-}
-
 std::optional<IndexBounds> VectorField::FindSharedBounds(const OutsideVoxels& outside)
 {
   const VoxelGrid voxelGrid{ this->Volume.PointExtent, this->ToOutput, {} };
-  if (!this->InPlace || !AreVoxelsPoints(voxelGrid, this->GetShape(outside)))
+  if (!this->OnDevice || !AreVoxelsPoints(voxelGrid, this->GetFieldShape(outside)))
   {
     return {};
   }
-  if (!this->InPlace->AreInHostMemory())
+  if (!this->OnDevice->AreInHostMemory())
   {
-    return FindDeformedBounds(voxelGrid, this->GetShape(outside), *this->InPlace);
+    return FindDeformedBounds(voxelGrid, this->GetFieldShape(outside), *this->OnDevice);
   }
   std::optional<PointRanges> changes;
   if (this->ScannedRevision != 0)
   {
-    changes = this->InPlace->GetChanges(this->ScannedRevision);
+    changes = this->OnDevice->GetChanges(this->ScannedRevision);
   }
   const FieldCheckResult state =
-    this->Scan.Check(voxelGrid, this->Get(outside), changes ? &*changes : nullptr);
+    this->Scan.Check(voxelGrid, this->GetField(outside), changes ? &*changes : nullptr);
   this->ScannedRevision = this->Revision;
   return state.IsUsable ? std::optional<IndexBounds>(state.Bounds) : std::nullopt;
 }

@@ -2,17 +2,13 @@
 #ifndef DeformVolumeVectorField_h
 #define DeformVolumeVectorField_h
 
-#include "DeviceVectors.h"
-#include "DisplacementField.h"
-#include "FieldChecker.h"
 #include "FieldPointMap.h"
 #include "ImageGeometry.h"
 #include "IndexBounds.h"
-#include "OutsideVoxels.h"
+#include "IndexDeformation.h"
 #include "VectorView.h"
 #include "VoxelGrid.h"
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -21,10 +17,12 @@
 namespace deformvolume
 {
 
-/// Converts a displacement field in world coordinates to the units of the kernels.
-class VectorField
+/// A displacement field that is given in world coordinates.
+class VectorField : public IndexDeformation
 {
 public:
+  VectorField() { this->Field = true; }
+
   /// Set a field. vectors: one for each point, x varying fastest; their memory must stay valid
   /// until another field is set. isInverse: the field leads from the output to the volume at rest.
   /// Throws an Error if the grid is empty or its transform is not invertible, or if the number of
@@ -42,21 +40,11 @@ public:
   /// Returns the field in world coordinates. Throws an Error if a vector is not finite.
   WorldField GetWorldField();
 
-  bool IsInverse() const { return this->Inverse; }
   const ImageGeometry& GetGrid() const { return this->Grid; }
 
-  ///@{
-  /// Valid after Update(). Get() copies vectors that are on a device to the host.
-  DisplacementField Get(const OutsideVoxels& outside) const;
-  /// Returns the vectors that are used without a copy, or null. GetShape() returns the field
-  /// without vectors.
-  const std::shared_ptr<DeviceVectors>& GetShared() const { return this->InPlace; }
-  DisplacementField GetShape(const OutsideVoxels& outside) const;
   /// Returns the bounds of the deformed volume, if they can be found without reading all vectors.
+  /// Call Update() first.
   std::optional<IndexBounds> FindSharedBounds(const OutsideVoxels& outside);
-  /// Returns a number that changes with the field.
-  std::uint64_t GetVersion() const { return this->Version; }
-  ///@}
 
 private:
   void Replace(const ImageGeometry& grid, const VectorView& vectors, bool isInverse,
@@ -68,22 +56,14 @@ private:
   std::vector<std::size_t> TakeVoxels(const Extent& voxels);
 
   ImageGeometry Grid;
-  VectorView Vectors;
-  bool Inverse = false;
-
-  std::array<int, 3> Dimensions{ { 0, 0, 0 } };
-  std::array<double, 12> IndexToField{};
-  std::vector<float> Displacements; // in output voxels
+  VectorView WorldVectors;
   bool IsOld = true;
   ImageGeometry Volume;
   OutputMap ToOutput;
-  std::uint64_t Version = 0;
 
-  // Vectors that their owner may change.
+  // Vectors that their owner may change. OnDevice are these vectors if they are not copied.
   std::shared_ptr<DeviceVectors> Shared;
   std::uint64_t Revision = 0; // the revision of Shared in this version
-  std::shared_ptr<DeviceVectors> InPlace;
-  std::array<double, 9> ToDisplacement{}; // of InPlace
   FieldChecker Scan;
   std::uint64_t ScannedRevision = 0; // 0: the last scan was for another volume or output
 };

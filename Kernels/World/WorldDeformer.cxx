@@ -203,9 +203,9 @@ IndexBounds WorldDeformer::FindBounds()
     {
       return *known;
     }
-    const DisplacementField field = this->Field.Get(this->Outside);
-    IndexBounds bounds = this->Field.IsInverse() ? ComputeLookupBounds(voxelGrid, field)
-                                                 : ComputeDeformedBounds(voxelGrid, field);
+    const DisplacementField field = this->Field.GetField(this->Outside);
+    IndexBounds bounds = this->Field.IsInverseField() ? ComputeLookupBounds(voxelGrid, field)
+                                                      : ComputeDeformedBounds(voxelGrid, field);
     if (bounds.IsEmpty())
     {
       throw Error("The displacement field holds no voxel of the volume. " +
@@ -213,8 +213,8 @@ IndexBounds WorldDeformer::FindBounds()
     }
     return bounds;
   }
-  const MeshAtRest mesh = this->Mesh.GetAtRest();
-  const float* displacements = this->Mesh.GetDisplacements().data();
+  const MeshAtRest mesh = this->Mesh.GetMeshAtRest();
+  const float* displacements = this->Mesh.GetNodeDisplacements();
   const MappedVolume mapped = this->GetMapped();
   if (this->Outside.AreExtrapolated())
   {

@@ -178,7 +178,7 @@ private:
   bool IsMesh() const { return this->Deformation == Deformations::Mesh; }
   bool IsInverse() const
   {
-    return this->Deformation == Deformations::Field && this->Field.IsInverse();
+    return this->Deformation == Deformations::Field && this->Field.IsInverseField();
   }
   MappedVolume GetMapped() const
   {

@@ -96,10 +96,10 @@ void WorldDeformer::UpdateJacobians(const std::function<bool(double)>& progress)
   if (!this->IsMesh())
   {
     ComputeFieldJacobians(
-      this->GetVoxelGrid(), this->Field.Get(this->Outside), {}, this->Jacobians.data());
+      this->GetVoxelGrid(), this->Field.GetField(this->Outside), {}, this->Jacobians.data());
     return;
   }
-  const MeshAtRest mesh = this->Mesh.GetAtRest();
+  const MeshAtRest mesh = this->Mesh.GetMeshAtRest();
   const MappedVolume mapped = this->GetMapped();
   if (this->MeshJacobiansVersion != this->Mapping.GetVersion() ||
     !this->Mapping.IsCurrent(mesh, mapped))
@@ -110,7 +110,7 @@ void WorldDeformer::UpdateJacobians(const std::function<bool(double)>& progress)
     this->MeshJacobiansVersion = this->Mapping.GetVersion();
   }
   this->MeshJacobians.Compute(this->ToOutput, mesh.Points, mesh.Tetrahedra,
-    this->Mesh.GetDisplacements().data(), this->Jacobians.data());
+    this->Mesh.GetNodeDisplacements(), this->Jacobians.data());
 }
 
 bool WorldDeformer::HasDensities() const
@@ -187,10 +187,10 @@ void WorldDeformer::CheckMemory(
 {
   const VoxelGrid voxelGrid = this->GetVoxelGrid();
   const bool isMesh = this->IsMesh();
-  const std::size_t tetrahedra = isMesh ? this->Mesh.GetAtRest().Tetrahedra.size() : 0;
+  const std::size_t tetrahedra = isMesh ? this->Mesh.GetMeshAtRest().Tetrahedra.size() : 0;
   const std::size_t nodes = isMesh
-    ? this->Mesh.GetAtRest().Points.size()
-    : static_cast<std::size_t>(GetNumberOfPoints(this->Field.GetShape(this->Outside)));
+    ? this->Mesh.GetMeshAtRest().Points.size()
+    : static_cast<std::size_t>(GetNumberOfPoints(this->Field.GetFieldShape(this->Outside)));
   // The caller has already allocated the output.
   std::uint64_t heldBytes = 0;
   for (const VolumeArray& array : arrays)
@@ -200,7 +200,7 @@ void WorldDeformer::CheckMemory(
   heldBytes = (heldBytes + 1) * static_cast<std::uint64_t>(GetNumberOfPoints(extent));
   const bool isRasterized = method == Resampling::MeshRasterization;
   const std::uint64_t runBytes = isMesh && !isRasterized
-    ? this->Mapping.GetRunBytes(this->Mesh.GetAtRest(), this->GetMapped())
+    ? this->Mapping.GetRunBytes(this->Mesh.GetMeshAtRest(), this->GetMapped())
     : 0;
   const std::uint64_t mapping = isRasterized ? 0 : GetMappingBytes(voxelGrid, !isMesh, runBytes);
   this->Deformer.CheckMemory(
@@ -213,7 +213,7 @@ Resampling WorldDeformer::ChooseMethod(
   ResamplerRequest choice;
   using Kinds = ResamplerRequest::Kinds;
   choice.Deformation = this->IsMesh() ? Kinds::Mesh
-    : this->Field.IsInverse()         ? Kinds::InverseField
+    : this->Field.IsInverseField()    ? Kinds::InverseField
                                       : Kinds::ForwardField;
   choice.Outside = this->Outside;
   choice.HasSmoothCut = this->Masks.CutTetrahedra != nullptr;
@@ -273,7 +273,7 @@ void WorldDeformer::SendVolume(const std::vector<VolumeArray>& arrays, Resamplin
 
 void WorldDeformer::SendMesh(const std::function<bool(double)>& progress)
 {
-  const MeshAtRest mesh = this->Mesh.GetAtRest();
+  const MeshAtRest mesh = this->Mesh.GetMeshAtRest();
   const MappedVolume mapped = this->GetMapped();
   const bool isSent = this->Sent.Deformation == Deformations::Mesh &&
     !this->Sent.ForRasterization && this->Sent.Shape == this->Mapping.GetVersion() &&
@@ -310,7 +310,7 @@ void WorldDeformer::SendMesh(const std::function<bool(double)>& progress)
   }
   if (!isSent || this->Sent.Vectors != this->Mesh.GetVectorsVersion())
   {
-    const float* displacements = this->Mesh.GetDisplacements().data();
+    const float* displacements = this->Mesh.GetNodeDisplacements();
     if (this->HasFadedMesh)
     {
       this->Faded.Move(displacements, mesh.Points.size(), nullptr);
@@ -325,7 +325,7 @@ void WorldDeformer::SendMesh(const std::function<bool(double)>& progress)
 
 void WorldDeformer::SendRestMesh()
 {
-  const MeshAtRest mesh = this->Mesh.GetAtRest();
+  const MeshAtRest mesh = this->Mesh.GetMeshAtRest();
   CheckBoxes(mesh, *this->Volume);
   const bool isSent = this->Sent.Deformation == Deformations::Mesh && this->Sent.ForRasterization &&
     this->Sent.Shape == mesh.ShapeVersion;
@@ -336,7 +336,7 @@ void WorldDeformer::SendRestMesh()
   }
   if (!isSent || this->Sent.Vectors != this->Mesh.GetVectorsVersion())
   {
-    this->Deformer.SetNodeDisplacements(this->Mesh.GetDisplacements().data(), nullptr, true);
+    this->Deformer.SetNodeDisplacements(this->Mesh.GetNodeDisplacements(), nullptr, true);
   }
   this->Sent.Shape = mesh.ShapeVersion;
   this->Sent.Vectors = this->Mesh.GetVectorsVersion();
@@ -347,25 +347,25 @@ void WorldDeformer::SendRestMesh()
 void WorldDeformer::SendField()
 {
   if (this->Sent.Deformation == Deformations::Field &&
-    this->Sent.Vectors == this->Field.GetVersion() && this->Sent.Outside == this->Outside)
+    this->Sent.Vectors == this->Field.GetVectorsVersion() && this->Sent.Outside == this->Outside)
   {
     return;
   }
-  const std::shared_ptr<DeviceVectors>& shared = this->Field.GetShared();
+  const std::shared_ptr<DeviceVectors>& shared = this->Field.GetDeviceVectors();
   if (shared && shared->GetDevice() == this->Device)
   {
-    this->Deformer.SetDisplacementField(this->Field.GetShape(this->Outside), shared);
+    this->Deformer.SetDisplacementField(this->Field.GetFieldShape(this->Outside), shared);
   }
-  else if (this->Field.IsInverse())
+  else if (this->Field.IsInverseField())
   {
-    this->Deformer.SetInverseField(this->Field.Get(this->Outside));
+    this->Deformer.SetInverseField(this->Field.GetField(this->Outside));
   }
   else
   {
-    this->Deformer.SetDisplacementField(this->Field.Get(this->Outside));
+    this->Deformer.SetDisplacementField(this->Field.GetField(this->Outside));
   }
   this->Sent.Deformation = Deformations::Field;
-  this->Sent.Vectors = this->Field.GetVersion();
+  this->Sent.Vectors = this->Field.GetVectorsVersion();
   this->Sent.Outside = this->Outside;
 }
 
@@ -506,7 +506,7 @@ void WorldDeformer::Finish(const WorldRequest& request, const Extent& extent)
   float* const jacobians = request.Jacobians ? request.Jacobians : this->JacobiansOutput.data();
   if ((request.Jacobians || hasDensities) && this->IsInverse())
   {
-    ComputeInverseFieldJacobians(extent, this->Field.Get(this->Outside), jacobians);
+    ComputeInverseFieldJacobians(extent, this->Field.GetField(this->Outside), jacobians);
     for (std::size_t i = 0; i < voxels; ++i)
     {
       jacobians[i] = request.Coverage[i] ? jacobians[i] : ClampTo<float>(request.Background);
@@ -553,7 +553,7 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
   const bool isRasterized = report.Method == Resampling::MeshRasterization;
   if (this->IsInverse())
   {
-    report.NumberOfInvertedTetrahedra = CountInvertedTetrahedra(this->Field.Get(false));
+    report.NumberOfInvertedTetrahedra = CountInvertedTetrahedra(this->Field.GetField(false));
   }
   if (!isRasterized)
   {
@@ -579,7 +579,7 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
   }
   if (this->Deformation != Deformations::None && !this->Outside.AreExtrapolated())
   {
-    warn(this->IsMesh() ? GetSizeWarning(this->Mesh.GetAtRest(), *this->Volume)
+    warn(this->IsMesh() ? GetSizeWarning(this->Mesh.GetMeshAtRest(), *this->Volume)
                         : GetSizeWarning(this->Field.GetGrid(), *this->Volume));
   }
   if (this->IsMesh())
@@ -589,7 +589,7 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
     {
       warn(warning);
     }
-    const MeshAtRest mesh = this->Mesh.GetAtRest();
+    const MeshAtRest mesh = this->Mesh.GetMeshAtRest();
     if (this->Mesh.ArePointsFloats() && !this->Outside.AreExtrapolated())
     {
       warn(GetRoundingWarning(mesh, *this->Volume));
@@ -597,22 +597,22 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
     const WorldMasks& masks = this->Masks;
     if (!isRasterized && !masks.Blanked && !masks.ActiveTetrahedra && !masks.CutTetrahedra)
     {
-      this->Splits.Update(mesh, mesh.ShapeVersion);
+      this->Splits.Update(mesh);
       const std::string split =
-        this->Splits.Describe(this->Mesh.GetDisplacements().data(), this->Volume->PointExtent);
+        this->Splits.Describe(this->Mesh.GetNodeDisplacements(), this->Volume->PointExtent);
       warn(split.empty() ? "" : split + " Cut the volume along the split, or merge these nodes.");
     }
     const FadedLinks& links = this->Mapping.GetMapping().Faded;
     if (!links.IsEmpty() && this->Mapping.IsCurrent(mesh, this->GetMapped()))
     {
-      warn(GetFadingWarning(links, mesh.Tetrahedra, this->Mesh.GetDisplacements().data(),
+      warn(GetFadingWarning(links, mesh.Tetrahedra, this->Mesh.GetNodeDisplacements(),
         this->GetOutputGrid().Spacing, this->Outside.FadeDistance));
     }
   }
   else if (this->Outside.AreKept())
   {
-    const Extent& moved = this->Field.IsInverse() ? whole : this->Volume->PointExtent;
-    warn(GetFadingWarning(this->Field.Get(this->Outside), GetBox(moved),
+    const Extent& moved = this->Field.IsInverseField() ? whole : this->Volume->PointExtent;
+    warn(GetFadingWarning(this->Field.GetField(this->Outside), GetBox(moved),
       glm::abs(this->GetOutputGrid().Spacing), this->Outside.FadeDistance));
   }
   if (this->HasDensities())

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WorldMesh.h"
 
-#include "DisplacementField.h" // for LargestDisplacement
 #include "Error.h"
 #include "ParallelFor.h"
 #include "VectorConversion.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <utility>
 
 namespace deformvolume
@@ -153,45 +149,19 @@ void WorldMesh::UpdateDisplacements(const OutputMap& toOutput)
 {
   this->CheckVectors();
   ++this->VectorsVersion;
-  const std::size_t nodes = this->WorldVectors.size();
-  const DerivedNodes& derived = this->Cells.Derived;
-  this->Displacements.resize(3 * (nodes + derived.GetCount()));
-  NodeFaults faults = NodeFaults();
-  faults.Resize(nodes);
-  const glm::dmat3 toDisplacement = GetToDisplacement(this->Volume, toOutput, 1.0);
-  ParallelForParts(nodes, NodesAtATime,
-    [&](std::size_t begin, std::size_t end)
+  this->SetDisplacements(
+    this->WorldVectors.size(),
+    [&](const VectorTaker& take)
     {
-      float* to = this->Displacements.data() + 3 * begin;
-      const bool areNear =
-        ConvertVectors(toDisplacement, &this->WorldVectors[begin], end - begin, to);
-      for (std::size_t i = begin; i < end && !areNear; ++i)
-      {
-        if (!ConvertVectors(toDisplacement, &this->WorldVectors[i], 1, &this->Displacements[3 * i]))
+      ParallelForParts(this->WorldVectors.size(), NodesAtATime,
+        [&](std::size_t begin, std::size_t end)
         {
-          std::fill_n(&this->Displacements[3 * i], 3, 0.0F);
-          faults.Mark(static_cast<std::int64_t>(i), NodeFaults::TooFar);
-        }
-      }
-    });
-  CheckFaults(faults, this->Cells.Tetrahedra, "Displacement");
-  for (std::size_t i = 0; i < derived.GetCount(); ++i)
-  {
-    const glm::vec3 sum(derived.Sum(i,
-      [&](std::int32_t node)
-      {
-        const float* vector = &this->Displacements[3 * static_cast<std::size_t>(node)];
-        return glm::dvec3(vector[0], vector[1], vector[2]);
-      }));
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (!(std::abs(sum[axis]) <= LargestDisplacement))
-      {
-        ThrowTooFar();
-      }
-      this->Displacements[3 * (nodes + i) + static_cast<std::size_t>(axis)] = sum[axis];
-    }
-  }
+          take(static_cast<std::int64_t>(begin), &this->WorldVectors[begin],
+            static_cast<std::int64_t>(end - begin));
+        });
+      CheckFaults(this->Faults, this->Cells.Tetrahedra, "Displacement");
+    },
+    GetToDisplacement(this->Volume, toOutput, 1.0), &this->Cells.Derived);
 }
 
 } // namespace deformvolume

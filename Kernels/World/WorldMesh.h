@@ -4,9 +4,7 @@
 
 #include "CellReader.h"
 #include "ImageGeometry.h"
-#include "MeshAtRest.h"
-#include "NodeFaults.h"
-#include "Tetrahedron.h"
+#include "IndexDeformation.h"
 #include "VectorView.h"
 #include "VoxelGrid.h"
 
@@ -20,9 +18,9 @@
 namespace deformvolume
 {
 
-/// Converts a deformation mesh and its displacements in world coordinates to the units of the
-/// kernels.
-class WorldMesh
+/// A deformation mesh that is given in world coordinates. Points and displacements of derived nodes
+/// follow those of the nodes.
+class WorldMesh : public IndexDeformation
 {
 public:
   /// Set the mesh. points: the nodes at rest, which are copied. Removes the displacements.
@@ -49,17 +47,11 @@ public:
   bool ArePointsFloats() const { return this->PointsAreFloats; }
   const MeshCells& GetCells() const { return this->Cells; }
 
-  ///@{
-  /// Valid after Update(). Points and displacements of derived nodes follow those of the nodes.
-  MeshAtRest GetAtRest() const
+  /// Valid after Update().
+  MeshAtRest GetMeshAtRest() const override
   {
-    return { this->Cells.Tetrahedra, this->Points, this, this->ShapeVersion };
+    return { this->Cells.Tetrahedra, this->Points, this, this->ShapeVersion, this->ShapeVersion };
   }
-  const std::vector<float>& GetDisplacements() const { return this->Displacements; }
-  /// These versions change with the points at rest, and with the displacements.
-  std::uint64_t GetShapeVersion() const { return this->ShapeVersion; }
-  std::uint64_t GetVectorsVersion() const { return this->VectorsVersion; }
-  ///@}
 
 private:
   void CheckVectors() const;
@@ -75,14 +67,12 @@ private:
   NodeFaults PointFaults;
   NodeFaults VectorFaults;
 
-  std::vector<glm::dvec3> Points;   // in continuous indices of the volume
-  std::vector<float> Displacements; // in output voxels
+  std::vector<glm::dvec3> Points; // in continuous indices of the volume
   bool PointsAreOld = true;
   bool DisplacementsAreOld = true;
   ImageGeometry Volume;
   OutputMap ToOutput;
   std::uint64_t ShapeVersion = 0;
-  std::uint64_t VectorsVersion = 0;
 };
 
 } // namespace deformvolume

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "IndexDeformation.h"
+
+#include "FieldGeometry.h"
+#include "ParallelFor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace deformvolume
+{
+
+MeshAtRest IndexDeformation::GetMeshAtRest() const
+{
+  static const std::vector<Tetrahedron> tetrahedra;
+  static const std::vector<glm::dvec3> points;
+  return { tetrahedra, points, this, 0, 0 };
+}
+
+std::optional<std::vector<TetrahedronChange>> IndexDeformation::GetConnectivityChanges(
+  std::uint64_t) const
+{
+  return {};
+}
+
+DisplacementField IndexDeformation::GetField(const OutsideVoxels& outside) const
+{
+  DisplacementField field = this->GetFieldShape(outside);
+  field.Vectors = this->OnDevice ? this->OnDevice->Read() : this->Vectors.data();
+  return field;
+}
+
+DisplacementField IndexDeformation::GetFieldShape(const OutsideVoxels& outside) const
+{
+  DisplacementField field;
+  field.Dimensions = this->FieldDimensions;
+  field.IndexToField = this->IndexToField;
+  if (this->OnDevice)
+  {
+    field.ToDisplacement = this->MatrixOnDevice;
+  }
+  SetOutside(outside, this->FieldSpacing, field);
+  return field;
+}
+
+PointRanges IndexDeformation::GetChanges(std::uint64_t version) const
+{
+  PointRanges changes;
+  const std::size_t count = this->Vectors.size() / 3;
+  for (std::size_t block = 0; block < this->BlockVersions.size(); ++block)
+  {
+    if (this->BlockVersions[block] <= version)
+    {
+      continue;
+    }
+    const std::size_t begin = block * PointsPerBlock;
+    if (changes.empty() || changes.back()[1] != begin)
+    {
+      changes.push_back({ { begin, begin } });
+    }
+    changes.back()[1] = std::min(begin + PointsPerBlock, count);
+  }
+  return changes;
+}
+
+void IndexDeformation::ResizeVectors(std::size_t count, std::size_t blocks)
+{
+  if (!this->VectorsAreWhole)
+  {
+    this->BlockVersions.clear();
+  }
+  if (this->Vectors.size() != 3 * count)
+  {
+    // A block with another number of points has changed.
+    const std::size_t same = std::min(this->Vectors.size() / 3, count) / PointsPerBlock;
+    this->BlockVersions.resize(std::min(this->BlockVersions.size(), same));
+    this->Vectors.resize(3 * count);
+  }
+  this->BlockVersions.resize(blocks, this->VectorsVersion);
+}
+
+void IndexDeformation::UpdateDerived(
+  const DerivedNodes& derived, std::size_t count, std::vector<std::atomic<bool>>& changed)
+{
+  std::atomic<bool> tooFar{ false };
+  ParallelForParts(derived.GetCount(), PointsPerBlock,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        const glm::vec3 sum(derived.Sum(i,
+          [&](std::int32_t node)
+          {
+            const float* vector = this->Vectors.data() + 3 * static_cast<std::size_t>(node);
+            return glm::dvec3(vector[0], vector[1], vector[2]);
+          }));
+        float* last = this->Vectors.data() + 3 * (count + i);
+        if (std::memcmp(last, &sum.x, 3 * sizeof(float)) != 0)
+        {
+          std::copy_n(&sum.x, 3, last);
+          changed[(count + i) / PointsPerBlock].store(true, std::memory_order_relaxed);
+        }
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          if (!(std::abs(sum[axis]) <= LargestDisplacement))
+          {
+            tooFar = true;
+          }
+        }
+      }
+    });
+  if (tooFar)
+  {
+    ThrowTooFar();
+  }
+}
+
+void IndexDeformation::SetDisplacements(std::size_t count, const VectorSource& read,
+  const glm::dmat3& toDisplacement, const DerivedNodes* derived)
+{
+  const std::uint64_t version = this->VectorsVersion;
+  const std::size_t all = count + (derived ? derived->GetCount() : 0);
+  const std::size_t blocks = (all + PointsPerBlock - 1) / PointsPerBlock;
+  this->ResizeVectors(all, blocks);
+  this->VectorsAreWhole = false;
+  std::vector<std::atomic<bool>> changed(blocks);
+  this->Faults.Resize(count);
+  read(
+    [&](std::int64_t first, const glm::dvec3* vectors, std::int64_t number)
+    {
+      this->Faults.Clear(first, number);
+      std::array<float, 3 * PointsPerBlock> displacements;
+      auto point = static_cast<std::size_t>(first);
+      const std::size_t end = point + static_cast<std::size_t>(number);
+      while (point < end)
+      {
+        const std::size_t block = point / PointsPerBlock;
+        const std::size_t some = std::min(end, (block + 1) * PointsPerBlock) - point;
+        const bool areNear = ConvertVectors(toDisplacement, vectors, some, displacements.data());
+        for (std::size_t i = 0; i < some && !areNear; ++i)
+        {
+          if (!ConvertVectors(toDisplacement, vectors + i, 1, &displacements[3 * i]))
+          {
+            std::fill_n(&displacements[3 * i], 3, 0.0F);
+            this->Faults.Mark(static_cast<std::int64_t>(point + i), NodeFaults::TooFar);
+          }
+        }
+        float* last = this->Vectors.data() + 3 * point;
+        if (std::memcmp(last, displacements.data(), 3 * some * sizeof(float)) != 0)
+        {
+          std::copy_n(displacements.begin(), 3 * some, last);
+          changed[block].store(true, std::memory_order_relaxed);
+        }
+        vectors += some;
+        point += some;
+      }
+    });
+  if (all > count)
+  {
+    this->UpdateDerived(*derived, count, changed);
+  }
+  for (std::size_t block = 0; block < blocks; ++block)
+  {
+    if (changed[block])
+    {
+      this->BlockVersions[block] = version;
+    }
+  }
+  this->VectorsAreWhole = true;
+}
+
+} // namespace deformvolume
