@@ -533,7 +533,7 @@ MUTATIONS = {
         "true", ["Cxx.TestDeformGeometryFilter"]),
     "points-direction": ("Filters/vtkDeformGeometryFilter.cxx", "this->IsInverted = this->Self->Inverse != (isField",
         "this->IsInverted = this->Self->Inverse || (isField", ["Cxx.TestDeformGeometryFilter"]),
-    "split-places": ("Filters/Engine/DeviceSession.cxx", "|| (openSplits && hasSplit)", "", [PIPELINES]),
+    "split-places": ("Kernels/World/DeviceSession.cxx", "|| (openSplits && hasSplit)", "", [PIPELINES]),
     "split-shape": ("Filters/DeformationMesh/RestMesh.cxx",
                     "inPlace &= this->Points[change.Before[k]] == this->Points[change.After[k]];",
                     "inPlace &= change.Before[k] >= 0;", [PIPELINES]),

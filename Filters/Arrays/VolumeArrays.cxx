@@ -121,7 +121,7 @@ bool HasSameMask(
 {
   Stamp now;
   AddArray(now, arrays[mask]);
-  return last.size() == 2 * NumberOfMasks && last[2 * mask].first == now[0].first &&
+  return last.size() >= 2 * NumberOfMasks && last[2 * mask].first == now[0].first &&
     last[2 * mask + 1] == now[1];
 }
 

@@ -166,8 +166,8 @@ void vtkDeformVolumeFilter::vtkInternals::MakeLinks(
   this->CheckWithRoom(
     [&]
     {
-      this->State->Device.CheckMemory(voxelGrid, {}, deformvolume::EmptyExtent, 0, mesh,
-        this->State->Mapping.GetRunBytes(mesh.GetMeshAtRest(), mapped));
+      this->State->Device.CheckMemory(voxelGrid, {}, { { 0, -1, 0, -1, 0, -1 } }, 0, mesh,
+        this->State->Mapping, mapped, deformvolume::Resampling::Exact);
     });
   this->State->Mapping.Update(mesh.GetMeshAtRest(), mapped, {});
 }

@@ -7,7 +7,6 @@
 #include "InputUpdate.h"
 #include "PipelineGeometry.h"
 #include "VolumeArrays.h"
-#include "WorldBoxes.h"
 
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
@@ -20,6 +19,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
+#include <optional>
+#include <vector>
 
 using deformvolume::Extent;
 
@@ -140,16 +142,12 @@ void vtkDeformVolumeFilter::vtkInternals::CheckMemory(
   const Inputs& inputs, const Extent& output, deformvolume::Resampling method)
 {
   deformvolume::ExecutionState& state = *this->State;
-  const bool isMapped =
-    !state.Deformation.IsField() && method != deformvolume::Resampling::MeshRasterization;
   this->CheckWithRoom(
     [&]
     {
       state.Device.CheckMemory(inputs.GetVoxelGrid(),
         deformvolume::MakeVolumeArrays(inputs.Arrays, this->Self->BackgroundValue), output,
-        state.Outputs.GetReusableBytes(), state.Deformation,
-        isMapped ? state.Mapping.GetRunBytes(state.Deformation.GetMeshAtRest(), inputs.Mapped) : 0,
-        method);
+        state.Outputs.GetReusableBytes(), state.Deformation, state.Mapping, inputs.Mapped, method);
     });
 }
 
@@ -189,6 +187,66 @@ void vtkDeformVolumeFilter::vtkInternals::ChooseMethod(const deformvolume::Ranks
 }
 
 //------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::SendVolume(
+  const Inputs& inputs, deformvolume::Resampling method)
+{
+  deformvolume::DeviceSession& device = this->State->Device;
+  std::vector<deformvolume::VolumeArray> arrays =
+    deformvolume::MakeVolumeArrays(inputs.Arrays, this->Self->BackgroundValue);
+  device.SetVoxelGrid(inputs.GetVoxelGrid(), arrays, method);
+  const deformvolume::Stamp arraysStamp = deformvolume::GetStamp(inputs.Arrays);
+  for (std::size_t i = 0; i < arrays.size() && device.GetArraysStamp() != arraysStamp; ++i)
+  {
+    if (!arrays[i].Data)
+    {
+      deformvolume::CopyToAOS(inputs.Arrays[i].Array, arrays[i]);
+    }
+  }
+  device.SetArrays(arrays, arraysStamp);
+
+  const deformvolume::Deformation& deformation = this->State->Deformation;
+  const deformvolume::OutsideVoxels& outside = inputs.Mapped.Outside;
+  const deformvolume::Stamp last = device.GetMasksStamp();
+  deformvolume::Stamp stamp = deformvolume::GetMasksStamp(inputs.MaskedVolume);
+  const std::size_t sizeIfDefined = stamp.size();
+  const bool isDefined = deformation.GetUndefinedVersion() == 0;
+  if (!isDefined)
+  {
+    std::uint64_t fadeDistance = 0;
+    std::memcpy(&fadeDistance, &outside.FadeDistance, sizeof(fadeDistance));
+    stamp.emplace_back(nullptr, deformation.GetUndefinedVersion());
+    stamp.emplace_back(nullptr, static_cast<std::uint64_t>(outside.Mode));
+    stamp.emplace_back(nullptr, fadeDistance);
+  }
+  if (stamp == last)
+  {
+    return;
+  }
+  deformvolume::VolumeMasks masks = deformvolume::ReadMasks(inputs.MaskedVolume, last);
+  std::vector<unsigned char> blanked;
+  if (!isDefined)
+  {
+    blanked = deformation.FindUndefinedVoxels(inputs.Mapped.Part, outside);
+    for (std::size_t i = 0; i < blanked.size() && masks.Blanked; ++i)
+    {
+      blanked[i] |= (masks.Blanked[i] & masks.BlankedBits) != 0 ? 1 : 0;
+    }
+    masks.Blanked = blanked.data();
+    masks.BlankedBits = 1;
+  }
+  if (!isDefined || last.size() > sizeIfDefined)
+  {
+    masks.WrittenBlanked.reset();
+  }
+  const auto written = [](const std::optional<deformvolume::PointRanges>& ranges)
+  { return ranges ? &*ranges : nullptr; };
+  device.SetMasks({ masks.Blanked, masks.Active, masks.Distances.Values, masks.Cut.Crossed,
+                    masks.Cut.Distances.Values, masks.BlankedBits, written(masks.WrittenBlanked),
+                    written(masks.WrittenActive), written(masks.WrittenDistances) },
+    stamp);
+}
+
+//------------------------------------------------------------------------------
 vtkDeformVolumeFilter::vtkInternals::Results vtkDeformVolumeFilter::vtkInternals::Resample(
   const Inputs& inputs, deformvolume::DeformRequest& request, vtkImageData* image)
 {
@@ -197,21 +255,9 @@ vtkDeformVolumeFilter::vtkInternals::Results vtkDeformVolumeFilter::vtkInternals
   this->CheckMemory(inputs, request.OutputExtent, request.Method);
   state.Extra.Compute(state.Deformation, state.Mapping, mapped, inputs.Deformation.ToOutput,
     this->GetProgress(0.0, 0.3));
-  state.Device.SetVolume(inputs.GetVoxelGrid(), inputs.MaskedVolume, inputs.Arrays,
-    this->Self->BackgroundValue, state.Deformation, mapped.Outside, request.Method);
-  if (request.Method == deformvolume::Resampling::MeshRasterization)
-  {
-    if (!state.Deformation.IsField())
-    {
-      deformvolume::CheckBoxes(state.Deformation.GetMeshAtRest(), mapped.Whole);
-    }
-    state.Device.SetRestMesh(state.Deformation, mapped.Outside);
-  }
-  else
-  {
-    state.Device.SetDeformation(state.Deformation, state.Mapping, mapped, this->Self->OpenSplits,
-      this->GetProgress(0.0, 0.3));
-  }
+  this->SendVolume(inputs, request.Method);
+  state.Device.SetDeformation(state.Deformation, state.Mapping, mapped, request.Method,
+    this->Self->OpenSplits, this->GetProgress(0.0, 0.3));
   request.Progress = this->GetProgress(0.3, 1.0);
   request.Compiling = this->GetCompilationReport();
   if (!request.Progress(0.0))

@@ -102,7 +102,7 @@ std::string vtkDeformVolumeFilter::vtkInternals::SelectDevice()
       this->ReleaseOtherStates();
     }
   }
-  return this->State->Device.SetDevice(this->Self->Device, limit);
+  return this->State->Device.SetDevice(this->GetDeviceRequest(), limit);
 }
 
 //------------------------------------------------------------------------------

@@ -47,6 +47,11 @@ public:
   /// Sets State to the state of SamplingFactor. Throws an Error if SamplingFactor is not 1, 2 or 4.
   void SelectState();
 
+  /// The device that Device requests, for ResolveDevice().
+  std::string GetDeviceRequest() const
+  {
+    return this->Self->Device == "best" ? "" : this->Self->Device;
+  }
   /// Selects the device for State and returns its name. The memory limit of State is MemoryLimit
   /// minus the device memory of the other states.
   std::string SelectDevice();
@@ -176,6 +181,9 @@ public:
     vtkInformation* volumeInfo, vtkInformation* output, deformvolume::DeformRequest& request);
   Results Resample(const Inputs& inputs, deformvolume::DeformRequest& request, vtkImageData* image);
   ///@}
+  /// Sends the volume, its arrays and masks, as far as they have changed. Voxels with an undefined
+  /// displacement are blanked.
+  void SendVolume(const Inputs& inputs, deformvolume::Resampling method);
   /// If the memory does not suffice to resample into an extent, frees that of other states. Throws
   /// an Error if it still does not suffice. Call Outputs.Prepare() of State first.
   void CheckMemory(

@@ -3,6 +3,7 @@
 // mesh.
 #include "vtkDeformVolumeFilterInternals.h"
 
+#include "Device.h"
 #include "InputUpdate.h"
 #include "MaskArray.h"
 #include "RankSettings.h"
@@ -90,10 +91,12 @@ DeformationSource vtkDeformVolumeFilter::vtkInternals::ReadDeformation(
     [&]
     {
       // The vectors are needed on the host for voxels that are kept, and for Jacobians.
-      source.Device =
-        ranks.AreMany() || this->Self->OutsideMode == KEEP || this->GetExtraArrays().NeedsJacobian()
-        ? ""
-        : deformvolume::DeviceSession::FindOwnMemory(this->Self->Device);
+      const std::string device = this->GetDeviceRequest();
+      source.Device = !ranks.AreMany() && this->Self->OutsideMode != KEEP &&
+          !this->GetExtraArrays().NeedsJacobian() &&
+          deformvolume::GetDeviceAbilities(device).OwnMemory
+        ? deformvolume::ResolveDevice(device)
+        : "";
     });
   ranks.Attempt(
     [&]

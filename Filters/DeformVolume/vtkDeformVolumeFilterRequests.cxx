@@ -4,6 +4,7 @@
 
 #include "vtkDeformVolumeFilterInternals.h"
 
+#include "Device.h"
 #include "InputUpdate.h"
 #include "OutputExtent.h"
 #include "PipelineGeometry.h"
@@ -168,7 +169,7 @@ int vtkDeformVolumeFilter::RequestInformation(
       outputGeometry = this->Internals->GetOutputGeometry(volume);
       // The device is checked here, because ParaView's views report errors of their own if
       // RequestData() fails after this pass has succeeded.
-      deformvolume::DeviceSession::CheckDevice(this->Device);
+      deformvolume::ResolveDevice(this->Internals->GetDeviceRequest());
     });
   deformvolume::MergeTimes(this, vtkInternals::ReferencePort, outInfo);
   this->Internals->AnnounceScalars(outInfo);

@@ -20,14 +20,14 @@ WorldDeformer::~WorldDeformer() = default;
 
 std::string WorldDeformer::SetDevice(const std::string& request)
 {
-  const std::string name = this->Deformer.SetDevice(request);
+  const std::string name = this->Session.SetDevice(request, this->MemoryLimit);
   this->DeviceRequest = request;
   return name;
 }
 
 void WorldDeformer::SetMemoryLimit(std::uint64_t bytes)
 {
-  this->Deformer.SetMemoryLimit(bytes);
+  this->MemoryLimit = bytes;
 }
 
 void WorldDeformer::SetVolume(const ImageGeometry& volume)
@@ -142,13 +142,12 @@ ImageGeometry WorldDeformer::FindOutput()
 
 std::uint64_t WorldDeformer::GetDeviceMemory() const
 {
-  return this->Deformer.GetDeviceMemory();
+  return this->Session.GetDeviceMemory();
 }
 
 void WorldDeformer::ReleaseMemory()
 {
-  this->Deformer.ReleaseMemory();
-  this->Forget();
+  this->Session.ReleaseMemory();
 }
 
 ImageGeometry WorldDeformer::GetOutputGrid() const

@@ -4,16 +4,16 @@
 
 #include "DeformRequest.h"
 #include "DeformVolumeExport.h"
+#include "DeviceSession.h"
 #include "DeviceVectors.h"
-#include "FadedMesh.h"
 #include "ImageGeometry.h"
+#include "IndexDeformation.h"
 #include "MappingCache.h"
 #include "OutsideVoxels.h"
 #include "SplitNodes.h"
 #include "VectorField.h"
 #include "VectorView.h"
 #include "VolumeArray.h"
-#include "VolumeDeformer.h"
 #include "VoxelJacobians.h"
 #include "WorldMesh.h"
 #include "WorldPoints.h"
@@ -28,17 +28,6 @@
 
 namespace deformvolume
 {
-
-/// The masks of a volume; see VolumeDeformer. Null: no mask of this kind.
-struct WorldMasks
-{
-  const unsigned char* Blanked = nullptr;
-  const unsigned char* ActiveTetrahedra = nullptr;
-  const float* BoundaryDistances = nullptr;
-  /// A smooth cut. Set both arrays or none.
-  const unsigned char* CutTetrahedra = nullptr;
-  const float* CutDistances = nullptr;
-};
 
 /// The extent and spacing of the output if there is no reference grid.
 struct OutputSettings
@@ -172,14 +161,12 @@ private:
   /// Returns the whole extent of the output. Must be called after UpdateDeformation().
   Extent FindWholeExtent();
 
-  /// Forgets what the device holds, so that all data are sent and the whole output is written.
-  void Forget();
-
   bool IsMesh() const { return this->Deformation == Deformations::Mesh; }
-  bool IsInverse() const
+  const IndexDeformation& GetDeformation() const
   {
-    return this->Deformation == Deformations::Field && this->Field.IsInverseField();
+    return this->IsMesh() ? static_cast<const IndexDeformation&>(this->Mesh) : this->Field;
   }
+  bool IsInverse() const { return this->GetDeformation().IsInverseField(); }
   MappedVolume GetMapped() const
   {
     return { *this->Volume, this->Volume->PointExtent, this->Outside };
@@ -208,18 +195,17 @@ private:
   Resampling ChooseMethod(
     const WorldRequest& request, const std::vector<VolumeArray>& arrays, const Extent& whole);
   void CheckMemory(const std::vector<VolumeArray>& arrays, const Extent& extent, Resampling method);
-  void SendVolume(const std::vector<VolumeArray>& arrays, Resampling method);
-  void SendMesh(const std::function<bool(double)>& progress);
-  void SendRestMesh();
-  void SendField();
+  void Send(const std::vector<VolumeArray>& arrays, Resampling method,
+    const std::function<bool(double)>& progress);
   DeformRequest MakeRequest(const WorldRequest& request, const Extent& whole, Resampling method);
   /// Completes additional arrays and densities after resampling.
   void Finish(const WorldRequest& request, const Extent& extent);
   void DivideDensities(const WorldRequest& request, const float* jacobians, std::int64_t voxels);
   void Describe(const WorldRequest& request, const Extent& whole, WorldReport& report);
 
-  VolumeDeformer Deformer;
+  DeviceSession Session;
   std::string DeviceRequest;
+  std::uint64_t MemoryLimit = 0;
   std::optional<ImageGeometry> Volume;
   std::vector<WorldArray> Arrays;
   /// The values of densities of integers, as floats. Empty if there are none, or if they were not
@@ -256,29 +242,6 @@ private:
   std::vector<float> Jacobians;
   std::vector<float> JacobiansOutput;  // if only densities need them
   std::int64_t NumberOfLostVoxels = 0; // of densities, in the last output
-
-  /// The data on the device.
-  struct SentData
-  {
-    VoxelGrid Grid;
-    std::size_t Width = 0; // size of the largest tuple, in bytes
-    bool ForLinks = false;
-    std::vector<VolumeArray> Arrays;
-    std::uint64_t ArraysVersion = 0;
-    std::uint64_t MasksVersion = 0;
-    Deformations Deformation = Deformations::None;
-    bool ForRasterization = false;
-    std::uint64_t Shape = 0; // of the mapping, or of the mesh for the rasterization
-    std::uint64_t Vectors = 0;
-    OutsideVoxels Outside;
-  };
-
-  // After an exception the data on the device are not known, and everything is sent again.
-  bool Known = false;
-  std::string Device;
-  SentData Sent;
-  FadedMesh Faded;
-  bool HasFadedMesh = false;
 
   // The memory of the last output, if it can be updated incrementally.
   std::vector<void*> LastOutputs;

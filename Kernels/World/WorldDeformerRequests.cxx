@@ -46,13 +46,6 @@ std::function<bool(double)> GetPart(
   };
 }
 
-bool AreSame(const std::vector<VolumeArray>& first, const std::vector<VolumeArray>& second)
-{
-  return std::equal(first.begin(), first.end(), second.begin(), second.end(),
-    [](const VolumeArray& a, const VolumeArray& b)
-    { return a.Data == b.Data && a.Type == b.Type && a.Components == b.Components; });
-}
-
 // The array does not own its data.
 VolumeArray MakeFloatArray(const std::vector<float>& values, double background)
 {
@@ -65,13 +58,6 @@ VolumeArray MakeFloatArray(const std::vector<float>& values, double background)
 }
 
 } // namespace
-
-void WorldDeformer::Forget()
-{
-  this->Sent = SentData();
-  this->LastOutputs.clear();
-  this->LastCoverage = nullptr;
-}
 
 void WorldDeformer::UpdateRestPositions()
 {
@@ -185,12 +171,6 @@ std::vector<VolumeArray> WorldDeformer::MakeArrays(
 void WorldDeformer::CheckMemory(
   const std::vector<VolumeArray>& arrays, const Extent& extent, Resampling method)
 {
-  const VoxelGrid voxelGrid = this->GetVoxelGrid();
-  const bool isMesh = this->IsMesh();
-  const std::size_t tetrahedra = isMesh ? this->Mesh.GetMeshAtRest().Tetrahedra.size() : 0;
-  const std::size_t nodes = isMesh
-    ? this->Mesh.GetMeshAtRest().Points.size()
-    : static_cast<std::size_t>(GetNumberOfPoints(this->Field.GetFieldShape(this->Outside)));
   // The caller has already allocated the output.
   std::uint64_t heldBytes = 0;
   for (const VolumeArray& array : arrays)
@@ -198,13 +178,8 @@ void WorldDeformer::CheckMemory(
     heldBytes += GetTupleSize(array);
   }
   heldBytes = (heldBytes + 1) * static_cast<std::uint64_t>(GetNumberOfPoints(extent));
-  const bool isRasterized = method == Resampling::MeshRasterization;
-  const std::uint64_t runBytes = isMesh && !isRasterized
-    ? this->Mapping.GetRunBytes(this->Mesh.GetMeshAtRest(), this->GetMapped())
-    : 0;
-  const std::uint64_t mapping = isRasterized ? 0 : GetMappingBytes(voxelGrid, !isMesh, runBytes);
-  this->Deformer.CheckMemory(
-    { voxelGrid, arrays, extent, nodes, tetrahedra, mapping, isRasterized }, heldBytes);
+  this->Session.CheckMemory(this->GetVoxelGrid(), arrays, extent, heldBytes, this->GetDeformation(),
+    this->Mapping, this->GetMapped(), method);
 }
 
 Resampling WorldDeformer::ChooseMethod(
@@ -234,139 +209,20 @@ Resampling WorldDeformer::ChooseMethod(
     });
 }
 
-void WorldDeformer::SendVolume(const std::vector<VolumeArray>& arrays, Resampling method)
+void WorldDeformer::Send(const std::vector<VolumeArray>& arrays, Resampling method,
+  const std::function<bool(double)>& progress)
 {
-  const bool links = method != Resampling::MeshRasterization;
-  std::size_t widest = 0;
+  Stamp stamp{ { nullptr, this->ArraysVersion } };
   for (const VolumeArray& array : arrays)
   {
-    widest = std::max(widest, GetTupleSize(array));
+    stamp.emplace_back(array.Data, static_cast<std::uint64_t>(array.Type));
+    stamp.emplace_back(nullptr, static_cast<std::uint64_t>(array.Components));
   }
-  const VoxelGrid voxelGrid = this->GetVoxelGrid();
-  if (this->Sent.Grid.VertexExtent != voxelGrid.VertexExtent ||
-    this->Sent.Grid.ToOutput != voxelGrid.ToOutput || this->Sent.Width < widest ||
-    this->Sent.ForLinks != links)
-  {
-    this->Forget();
-    this->Deformer.SetVoxelGrid(voxelGrid, widest, links);
-    this->Sent.Grid = voxelGrid;
-    this->Sent.Width = widest;
-    this->Sent.ForLinks = links;
-  }
-  if (this->Sent.ArraysVersion != this->ArraysVersion || !AreSame(this->Sent.Arrays, arrays))
-  {
-    this->Deformer.SetArrays(arrays);
-    this->Sent.Arrays = arrays;
-    this->Sent.ArraysVersion = this->ArraysVersion;
-    this->LastOutputs.clear();
-  }
-  this->Deformer.SetArrayOptions(arrays);
-  if (this->Sent.MasksVersion != this->MasksVersion)
-  {
-    this->Deformer.SetBlanked(this->Masks.Blanked);
-    this->Deformer.SetActiveTetrahedra(this->Masks.ActiveTetrahedra);
-    this->Deformer.SetBoundaryDistances(this->Masks.BoundaryDistances);
-    this->Deformer.SetCut(this->Masks.CutTetrahedra, this->Masks.CutDistances);
-    this->Sent.MasksVersion = this->MasksVersion;
-  }
-}
-
-void WorldDeformer::SendMesh(const std::function<bool(double)>& progress)
-{
-  const MeshAtRest mesh = this->Mesh.GetMeshAtRest();
-  const MappedVolume mapped = this->GetMapped();
-  const bool isSent = this->Sent.Deformation == Deformations::Mesh &&
-    !this->Sent.ForRasterization && this->Sent.Shape == this->Mapping.GetVersion() &&
-    this->Mapping.IsCurrent(mesh, mapped);
-  if (!isSent)
-  {
-    this->Mapping.Update(mesh, mapped, progress);
-    const StaticMapping& mapping = this->Mapping.GetMapping();
-    const std::vector<Tetrahedron>* tetrahedra = &mesh.Tetrahedra;
-    std::size_t nodes = mesh.Points.size();
-    this->HasFadedMesh = !mapping.Faded.IsEmpty();
-    if (this->HasFadedMesh)
-    {
-      this->Faded.Set(mapping.Faded, *tetrahedra, nodes);
-      tetrahedra = &this->Faded.GetTetrahedra();
-      nodes = this->Faded.GetNumberOfNodes();
-    }
-    if (this->Mapping.IsByRuns())
-    {
-      this->Deformer.SetMesh(
-        tetrahedra->data(), tetrahedra->size(), nodes, mapping.Runs, &mapping.Boundary);
-    }
-    else
-    {
-      this->Deformer.SetMesh(
-        tetrahedra->data(), tetrahedra->size(), nodes, mapping.Links.data(), &mapping.Boundary);
-    }
-    this->Sent.Shape = this->Mapping.GetVersion();
-  }
-  if (!this->Outside.AreExtrapolated())
-  {
-    // Links or runs are needed again only for the bounds of an extrapolated deformation.
-    this->Mapping.ReleaseVoxels();
-  }
-  if (!isSent || this->Sent.Vectors != this->Mesh.GetVectorsVersion())
-  {
-    const float* displacements = this->Mesh.GetNodeDisplacements();
-    if (this->HasFadedMesh)
-    {
-      this->Faded.Move(displacements, mesh.Points.size(), nullptr);
-      displacements = this->Faded.GetDisplacements().data();
-    }
-    this->Deformer.SetNodeDisplacements(displacements, nullptr, true);
-  }
-  this->Sent.Vectors = this->Mesh.GetVectorsVersion();
-  this->Sent.Deformation = Deformations::Mesh;
-  this->Sent.ForRasterization = false;
-}
-
-void WorldDeformer::SendRestMesh()
-{
-  const MeshAtRest mesh = this->Mesh.GetMeshAtRest();
-  CheckBoxes(mesh, *this->Volume);
-  const bool isSent = this->Sent.Deformation == Deformations::Mesh && this->Sent.ForRasterization &&
-    this->Sent.Shape == mesh.ShapeVersion;
-  if (!isSent)
-  {
-    this->Deformer.SetRestMesh(
-      mesh.Tetrahedra.data(), mesh.Tetrahedra.size(), mesh.Points.size(), &mesh.Points.front().x);
-  }
-  if (!isSent || this->Sent.Vectors != this->Mesh.GetVectorsVersion())
-  {
-    this->Deformer.SetNodeDisplacements(this->Mesh.GetNodeDisplacements(), nullptr, true);
-  }
-  this->Sent.Shape = mesh.ShapeVersion;
-  this->Sent.Vectors = this->Mesh.GetVectorsVersion();
-  this->Sent.Deformation = Deformations::Mesh;
-  this->Sent.ForRasterization = true;
-}
-
-void WorldDeformer::SendField()
-{
-  if (this->Sent.Deformation == Deformations::Field &&
-    this->Sent.Vectors == this->Field.GetVectorsVersion() && this->Sent.Outside == this->Outside)
-  {
-    return;
-  }
-  const std::shared_ptr<DeviceVectors>& shared = this->Field.GetDeviceVectors();
-  if (shared && shared->GetDevice() == this->Device)
-  {
-    this->Deformer.SetDisplacementField(this->Field.GetFieldShape(this->Outside), shared);
-  }
-  else if (this->Field.IsInverseField())
-  {
-    this->Deformer.SetInverseField(this->Field.GetField(this->Outside));
-  }
-  else
-  {
-    this->Deformer.SetDisplacementField(this->Field.GetField(this->Outside));
-  }
-  this->Sent.Deformation = Deformations::Field;
-  this->Sent.Vectors = this->Field.GetVectorsVersion();
-  this->Sent.Outside = this->Outside;
+  this->Session.SetVoxelGrid(this->GetVoxelGrid(), arrays, method);
+  this->Session.SetArrays(arrays, stamp);
+  this->Session.SetMasks(this->Masks, { { nullptr, this->MasksVersion } });
+  this->Session.SetDeformation(
+    this->GetDeformation(), this->Mapping, this->GetMapped(), method, false, progress);
 }
 
 DeformRequest WorldDeformer::MakeRequest(
@@ -439,13 +295,7 @@ WorldReport WorldDeformer::Deform(const WorldRequest& request)
                 "be divided by the Jacobian. Choose another interpolation, or give no densities.");
   }
   WorldReport report;
-  report.Device = this->Deformer.SetDevice(this->DeviceRequest);
-  if (!this->Known || report.Device != this->Device)
-  {
-    this->Forget();
-  }
-  this->Device = report.Device;
-  this->Known = false; // until this call has succeeded
+  report.Device = this->Session.SetDevice(this->DeviceRequest, this->MemoryLimit);
   this->UpdateDeformation();
   const Extent whole = this->FindWholeExtent();
   const auto progress = GetPart(request.Progress, 0.0, 0.3);
@@ -453,27 +303,13 @@ WorldReport WorldDeformer::Deform(const WorldRequest& request)
   report.Method = this->ChooseMethod(request, arrays, whole);
   DeformRequest made = this->MakeRequest(request, whole, report.Method);
   this->CheckMemory(arrays, made.OutputExtent, report.Method);
-  this->SendVolume(arrays, report.Method);
-  if (!this->IsMesh())
-  {
-    this->SendField();
-  }
-  else if (report.Method == Resampling::MeshRasterization)
-  {
-    this->SendRestMesh();
-  }
-  else
-  {
-    this->SendMesh(progress);
-  }
+  this->Send(arrays, report.Method, progress);
   if (made.Progress && !made.Progress(0.0))
   {
-    this->Known = true; // all data were sent
     throw Aborted();
   }
   this->LastOutputs.clear();
-  static_cast<DeformReport&>(report) = this->Deformer.Deform(made);
-  this->Known = true;
+  static_cast<DeformReport&>(report) = this->Session.Deform(made);
   if (request.IsIncremental)
   {
     this->LastOutputs = request.Outputs;
