@@ -32,19 +32,19 @@ struct ElementBytes
 /// Returns the value of voxels of an array that the deformed volume does not cover.
 ElementBytes GetBackground(const VolumeArray& array);
 
-/// KernelLauncher at least `items` heavy work-items: groups of 1 on CPUs, of 64 elsewhere. The kernel
+/// Launches at least `items` heavy work-items: groups of 1 on CPUs, of 64 elsewhere. The kernel
 /// must ignore the additional items.
 void LaunchHeavyItems(KernelLauncher& launcher, const cl::Kernel& kernel, std::size_t items);
 
-/// KernelLauncher at least `items` light work-items, in groups of 64. The kernel must ignore the
+/// Launches at least `items` light work-items, in groups of 64. The kernel must ignore the
 /// additional items.
 void LaunchLightItems(KernelLauncher& launcher, const cl::Kernel& kernel, std::uint64_t items);
 
-/// KernelLauncher a work-group for each of `count` listed patches (see ChangeTracker::Plan), with a
+/// Launches a work-group for each of `count` listed patches (see ChangeTracker::Plan), with a
 /// work-item for each row of the patch.
 void LaunchPatches(KernelLauncher& launcher, const cl::Kernel& kernel, std::size_t count);
 
-/// KernelLauncher a kernel whose work-items process memory in steps of `step` elements. There are no more
+/// Launches a kernel whose work-items process memory in steps of `step` elements. There are no more
 /// work-items than a device executes at once: starting a work-item takes longer than a step.
 void LaunchSteps(
   KernelLauncher& launcher, const cl::Kernel& kernel, std::uint64_t size, std::uint64_t step);

@@ -15,7 +15,7 @@ namespace
 {
 
 // The number of bricks in a launch is chosen so that the list takes 1 / PartOfMemory of the memory,
-// within the limits LeastBricks and MostBricks. KernelLauncher of ExactPasses never have more bricks.
+// within the limits LeastBricks and MostBricks. Launches of ExactPasses never have more bricks.
 constexpr std::uint64_t LeastBricks = 64;
 constexpr std::uint64_t MostBricks = 704;
 constexpr std::uint64_t PartOfMemory = 64;

@@ -258,7 +258,7 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
     for (int begin = chunk.LayersBegin; begin < chunk.LayersEnd;)
     {
       KernelParameters p = this->Volume.GetParameters(chunk);
-      // KernelLauncher end at the borders of bricks.
+      // Launches end at the borders of bricks.
       const int step =
         this->GetLayersPerLaunch() - (begin - p.BrickOrigin[2]) % DEFORMVOLUME_BRICK_Z;
       p.LayersBegin = begin;

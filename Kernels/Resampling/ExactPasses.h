@@ -68,10 +68,10 @@ private:
   /// and enough that CPUs do not wait at the end of each launch.
   int GetLayersPerLaunch() const;
 
-  /// KernelLauncher a kernel of a form over the bricks of the list that the parameters select.
+  /// Launches a kernel of a form over the bricks of the list that the parameters select.
   void Launch(const DeformRequest& request, cl::Kernel& kernel, ResamplingKernel form,
     const KernelParameters& p);
-  /// KernelLauncher the kernel for columns, each time followed by the kernels for deferred cells.
+  /// Launches the kernel for columns, each time followed by the kernels for deferred cells.
   void RunColumns(const DeformRequest& request, const OutputSlab& output, cl::Kernel& columns,
     const std::vector<PlannedLaunch>& launcher);
   /// Returns the size of a work-group of the kernel for columns.
