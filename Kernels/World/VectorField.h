@@ -2,6 +2,7 @@
 #ifndef DeformVolumeVectorField_h
 #define DeformVolumeVectorField_h
 
+#include "FieldChecker.h"
 #include "FieldPointMap.h"
 #include "ImageGeometry.h"
 #include "IndexBounds.h"
