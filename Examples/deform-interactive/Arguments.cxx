@@ -42,13 +42,14 @@ std::optional<int> ParseArguments(int argc, char* argv[], Arguments& arguments)
   add("--size", arguments.Size, "WIDTH,HEIGHT", "Size of the window, in pixels [1000,750]")
     ->delimiter(',')
     ->check(CLI::Range(200, 8000, "200 to 8000"));
+  program.set_version_flag("--version", "deform-interactive " DEFORMVOLUME_VERSION);
   try
   {
     program.parse(argc, argv);
   }
-  catch (const CLI::CallForHelp& help)
+  catch (const CLI::Success& request) // --help or --version
   {
-    return program.exit(help);
+    return program.exit(request);
   }
   catch (const CLI::ParseError& error)
   {

@@ -576,6 +576,7 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
   general.AddFlag(
     "--list-devices", options.ListDevices, "List the OpenCL devices, the best first, and exit");
   AddDeformation(program, options);
+  program.set_version_flag("--version", "deform-volume " DEFORMVOLUME_VERSION);
   AddResampling(program, options);
   AddOutput(program, options);
   AddDependencies(program);
@@ -589,7 +590,7 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
     program.parse(argc, argv);
     Complete(program, options);
   }
-  catch (const CLI::CallForHelp& help)
+  catch (const CLI::Success& request) // --help or --version
   {
     return program.exit(help);
   }

@@ -182,6 +182,8 @@ assert not os.path.exists(path("o.png"))
 
 # Valid commands.
 assert "Exit codes" in help_text, help_text
+output, _ = call(program, "--version")
+assert re.fullmatch(r"deform-volume \d+\.\d+\.\d+\n", output), output
 output, _ = call(program, "--list-devices")
 assert output.strip(), "--list-devices lists no device"
 

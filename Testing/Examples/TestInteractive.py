@@ -39,6 +39,8 @@ for code, words, arguments in (
     assert errors.startswith("deform-interactive: ") and words in errors, errors
 output, _ = call(program, "--help")
 assert "--screenshot" in output
+output, _ = call(program, "--version")
+assert re.fullmatch(r"deform-interactive \d+\.\d+\.\d+\n", output), output
 
 # A recording without tools does not change the volume.
 middle = (100, 100)
