@@ -174,6 +174,8 @@ for volume_name in ("volume.nii.gz", "volume.mhd"):
 # Files with positions instead of displacements: those of the identity, and those of a small displacement.
 for name, values in (("identity.nii", field_points), ("positions.nii", field_points + vectors)):
     write_nifti(path(name), values.astype(numpy.float32), field, 1006)
+# RAS positions in a file that states LPS.
+write_nifti(path("mirrored-positions.nii"), (field_points + vectors).astype(numpy.float32), field, 1007)
 write_nifti(path("folded.nii"), (-2 * (field_points - middle)).astype(numpy.float32), field, 1006)
 write_nrrd(path("kind.nrrd"), single @ flip.astype(numpy.float32), in_lps,
            extra="displacement field type:=resampling\n")
@@ -181,6 +183,7 @@ inverse_flag = ("--field-is-inverse",)
 for field_name, options, words in (
         ("identity.nii", (), "look like the positions"),
         ("positions.nii", inverse_flag, "look like the positions"),
+        ("mirrored-positions.nii", (), "The file also states the wrong world coordinates"),
         ("folded.nii", inverse_flag, "The field folds"), ("folded.nii", (), "The deformation folds the volume"),
         ("inverse.nii", inverse_flag, ""),
         ("kind.nrrd", (), "needs --field-is-inverse"), ("kind.nrrd", inverse_flag, "")):

@@ -171,9 +171,9 @@ void FlipWorld(vtkImageData* image)
   FlipWorldAxes(image, vectors);
 }
 
-/// Warns if the vectors seem to be deformed positions, which NiftyReg and voxelmorph call a
-/// deformation field: such vectors increase with the position by about the same amount.
-void CheckPositions(vtkImageData* image, const std::string& path, Messages& messages)
+/// Whether the vectors, with x and y multiplied by sign, are about the positions of their points:
+/// such vectors increase with the position by about the same amount.
+bool ArePositions(vtkImageData* image, double sign)
 {
   vtkDataArray* const vectors = image->GetPointData()->GetVectors();
   const vtkIdType points = image->GetNumberOfPoints();
@@ -191,6 +191,8 @@ void CheckPositions(vtkImageData* image, const std::string& path, Messages& mess
     double vector[3];
     image->GetPoint(i, point);
     vectors->GetTuple(i, vector);
+    vector[0] *= sign;
+    vector[1] *= sign;
     vtkMath::Subtract(point, middle, point);
     vtkMath::Subtract(vector, middle, vector);
     both += vtkMath::Dot(vector, point);
@@ -199,12 +201,23 @@ void CheckPositions(vtkImageData* image, const std::string& path, Messages& mess
   }
   const double size = std::sqrt(squares / static_cast<double>(count));
   constexpr double tolerance = 0.2;
-  if (size > 0.0 && std::abs(both / squares - 1.0) < tolerance &&
-    vtkMath::Norm(mean) / static_cast<double>(count) < tolerance * size)
+  return size > 0.0 && std::abs(both / squares - 1.0) < tolerance &&
+    vtkMath::Norm(mean) / static_cast<double>(count) < tolerance * size;
+}
+
+/// Warns if the vectors seem to be deformed positions, which NiftyReg and voxelmorph call a
+/// deformation field, in the world coordinates of the file or in the other ones.
+void CheckPositions(vtkImageData* image, const std::string& path, Messages& messages)
+{
+  const bool areInWorld = ArePositions(image, 1.0);
+  if (areInWorld || ArePositions(image, -1.0))
   {
     messages.Warn("The vectors of " + path +
       " look like the positions of its voxels, which some programs call a deformation field. A "
-      "displacement field holds how far each point moves: subtract the position of each voxel.");
+      "displacement field holds how far each point moves: subtract the position of each voxel." +
+      (areInWorld ? ""
+                  : " The file also states the wrong world coordinates, in which x and y have the "
+                    "opposite sign. In NIfTI files, intent 1006 states ras and 1007 states lps."));
   }
 }
 }
