@@ -354,7 +354,7 @@ void CheckOptions(const Options& options)
     std::all_of(options.Points.begin(), options.Points.end(), IsLandmarkFile))
   {
     throw UsageError(
-      "--mesh-space requires --mesh or --cut, or --points of the types .vtp or .vtu");
+      "--mesh-space requires --mesh or --cut, or --points of the types .vtp, .vtu, .stl or .ply");
   }
   if (!options.WritesResult() && options.MeshOutput.empty())
   {

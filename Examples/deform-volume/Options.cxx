@@ -429,9 +429,10 @@ void AddResampling(CLI::App& program, Options& options)
     "sufficient");
   group.AddChoice("--interpolation", options.Interpolation, "NAME",
     { "nearest", "linear", "cubic" },
-    "linear; nearest, which takes the value of the nearest voxel, as --labels does; or cubic, "
-    "which uses 64 voxels. Where some of them are missing or cut off it is linear; with an "
-    "inverse field or mesh-rasterization, voxels beyond the border are extrapolated linearly");
+    "linear; nearest, which takes the value of one voxel of the cell, usually the nearest one, as "
+    "--labels does; or cubic, which uses 64 voxels, and is linear where some of them are missing "
+    "or cut off. With an inverse field or mesh-rasterization, nearest takes the nearest voxel, and "
+    "for cubic, voxels beyond the border are extrapolated linearly");
   group.Add("--device", options.Device, "NAME",
     "OpenCL device: cpu, gpu, or a part of a name that --list-devices prints [the environment "
     "variable DEFORMVOLUME_DEVICE, or else the best device]");
@@ -575,8 +576,8 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
       (HasITK ? " and DICOM series" : ""));
   general.AddFlag(
     "--list-devices", options.ListDevices, "List the OpenCL devices, the best first, and exit");
-  AddDeformation(program, options);
   program.set_version_flag("--version", "deform-volume " DEFORMVOLUME_VERSION);
+  AddDeformation(program, options);
   AddResampling(program, options);
   AddOutput(program, options);
   AddDependencies(program);
@@ -592,7 +593,7 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
   }
   catch (const CLI::Success& request) // --help or --version
   {
-    return program.exit(help);
+    return program.exit(request);
   }
   catch (const CLI::ParseError& error)
   {
