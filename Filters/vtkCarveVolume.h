@@ -71,8 +71,8 @@ public:
   ///@{
   /**
    * Set/Get the implicit function, in world coordinates. Its inside is where it is negative.
-   * Spheres and boxes without a transform are evaluated only near them, other functions in the
-   * whole volume. Default: null, which carves nothing.
+   * Spheres, boxes and planes without a transform are evaluated only near them, other functions in
+   * the whole volume. Default: null, which carves nothing.
    */
   virtual void SetImplicitFunction(vtkImplicitFunction* function);
   vtkGetObjectMacro(ImplicitFunction, vtkImplicitFunction);

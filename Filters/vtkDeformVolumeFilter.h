@@ -288,9 +288,8 @@ public:
   ///@{
   /**
    * Set/Get whether the output has a point array "RestPosition" (three components): the world
-   * coordinates at rest of the tissue at a voxel. They are the exact inverse of the deformation.
-   * Their type is float, or double if a coordinate of the volume is over 16,384 times the spacing.
-   * Default: off.
+   * coordinates at rest of the tissue at a voxel, to 1/256 of an output voxel. Their type is float,
+   * or double if a coordinate of the volume is over 16,384 times the spacing. Default: off.
    */
   vtkSetMacro(GenerateRestPositions, bool);
   vtkGetMacro(GenerateRestPositions, bool);
@@ -311,8 +310,9 @@ public:
   ///@{
   /**
    * Set/Get whether the output has a point array "FoldCount" (unsigned int): the number of
-   * tetrahedra of the sampling mesh that contain a voxel. More than 1 means a fold. It is an error
-   * for meshes with MESH_RASTERIZATION. Default: off.
+   * tetrahedra of the sampling mesh that contain a voxel. More than 1 means a fold. With an inverse
+   * field it is 1 at each covered voxel and does not show folds: the Jacobian is negative there. It
+   * is an error for meshes with MESH_RASTERIZATION. Default: off.
    */
   vtkSetMacro(GenerateFoldCount, bool);
   vtkGetMacro(GenerateFoldCount, bool);
