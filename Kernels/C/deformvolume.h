@@ -294,7 +294,7 @@ extern "C"
 
   /** Sets the displacements of the points of the mesh: count vectors of three numbers, one for each
    * point, in world coordinates. type: DV_FLOAT32 or DV_FLOAT64. If a vector of a point that a cell
-   * uses is not finite, or is longer than 16,383 output voxels, dv_deform() fails. */
+   * uses is not finite, or more than 16,383 output voxels on an axis, dv_deform() fails. */
   DV_EXPORT int32_t dv_set_displacements(
     dv_deformer* deformer, int32_t type, int64_t count, const void* displacements);
 
@@ -417,7 +417,8 @@ extern "C"
      * multiplies volumes there; negative if the volume is inverted. */
     float* jacobian;
     /** Null, or memory for one integer per voxel: the number of tetrahedra of the sampling mesh
-     * that contain it; more than 1 in folds. Not allowed with inverse fields. */
+     * that contain it; more than 1 in folds. With inverse fields it is 1 at each covered voxel and
+     * does not show folds: the Jacobian is negative there. */
     uint32_t* fold_count;
     /** The value of rest_positions and jacobian at voxels that are not covered. */
     double extra_background;
