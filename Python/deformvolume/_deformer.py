@@ -86,7 +86,9 @@ class Deformed:
             None unless requested.
         jacobian: float32: Jacobian determinant of the deformation (deformed by undeformed volume). None unless
             requested.
-        fold_count: uint32: number of tetrahedra of the sampling mesh that cover the voxel. None unless requested.
+        fold_count: uint32: number of tetrahedra of the sampling mesh that cover the voxel; more than 1 in folds. With
+            an inverse field it is 1 at each covered voxel and does not show folds: the Jacobian is negative there.
+            None unless requested.
         counts: "number_of_covered_voxels"; "number_of_inverted_tetrahedra": more than 0 if the deformation folds;
             "number_of_flat_tetrahedra": cells of the mesh without volume; "number_of_overstretched_cells": cells of
             the volume that are stretched over more than 4,000 voxels and left out in part; "number_of_hidden_samples":
