@@ -5,9 +5,12 @@ import importlib.util
 import pathlib
 import re
 import sys
+import tempfile
 import types
 
 import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkFiltersCore import vtkContourFilter
 
 source = pathlib.Path(sys.argv[1])
 sys.path.insert(0, sys.argv[2])
@@ -103,7 +106,7 @@ else:
     compile(of_pyvista, "README", "exec")
 
 # The C++ classes.
-(of_classes,) = (block for block in read_blocks("Documents/deformation.md", "python") if "import " in block)
+of_classes, of_surfaces = read_blocks("Documents/deformation.md", "python")
 names = run(of_classes)
 rest = names["volume"].GetOutput()
 result = names["result"]
@@ -113,3 +116,28 @@ low, high = result.GetBounds()[:2]
 assert (low, high) == (-10, 15), (low, high)
 assert names["deform"].GetNumberOfCoveredVoxels() > 0.95 * 21 ** 3
 assert names["deform"].GetNumberOfInvertedTetrahedra() == 0, names["deform"].GetNumberOfInvertedTetrahedra()
+# Its surface: an isosurface of the volume at rest, bent in the same way.
+names["contour"] = vtkContourFilter()
+names["contour"].SetInputConnection(names["volume"].GetOutputPort())
+names["contour"].SetValue(0, 150)
+exec(compile(of_surfaces, "README", "exec"), names)  # pylint: disable=exec-used
+names["surface"].Update()
+before, after = names["contour"].GetOutput().GetBounds(), names["surface"].GetOutput().GetBounds()
+assert after[1] > before[1] + 2 and after[2:] == before[2:], (before, after)
+
+# A body under gravity, and with a handle.
+of_body = read_blocks("Documents/physics.md", "python")[0]
+names = run(of_body)
+nodes = names["body"].GetOutput()
+displacements = vtk_to_numpy(nodes.GetPointData().GetArray("Displacement"))
+top = nodes.FindPoint(0, 0, 10)
+assert abs(displacements[top][0] - 3) < 1e-6, displacements[top]
+covered = names["deform"].GetNumberOfCoveredVoxels()
+assert 8000 < covered < 9000, covered  # of 9261: the body moves away from its upper side
+
+# The sheet of a cut.
+with tempfile.TemporaryDirectory() as folder:
+    (of_sheet,) = read_blocks("Documents/deform-volume.md", "python")
+    sheet = pathlib.Path(folder, "sheet.vtp")
+    run(of_sheet.replace("sheet.vtp", str(sheet)))
+    assert sheet.exists()
