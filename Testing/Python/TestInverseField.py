@@ -327,11 +327,16 @@ assert wrong < 0.01, wrong
 wrong = np.abs(get(affine.GetOutput(), "ramp") - results[1][0])[covered].max()
 assert wrong < 1e-4, wrong
 
-# A reflection inverts all tetrahedra of the field's grid, five for each cell.
+# A reflection inverts all tetrahedra of the field's grid, five for each cell. The fold count does not show that.
 mirror = field_grid.make_image(b=(-2.0 * away[..., :1]) * np.array([1.0, 0.0, 0.0]))
 mirrored = make_filter(ramp, mirror)
+mirrored.GenerateJacobianOn()
+mirrored.GenerateFoldCountOn()
 mirrored.Update()
 assert mirrored.GetNumberOfInvertedTetrahedra() == 5 * np.prod(np.array(field_grid.size) - 1)
+covered = get(mirrored.GetOutput(), "vtkValidPointMask") != 0
+assert np.array_equal(get(mirrored.GetOutput(), "FoldCount"), covered)
+assert (get(mirrored.GetOutput(), "Jacobian")[covered] < 0.0).all()
 
 # Hidden points have no value.
 hidden = grid.make_image(single=arrays["single"])
