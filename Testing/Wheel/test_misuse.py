@@ -78,10 +78,7 @@ class Misuse(unittest.TestCase):
 
     def test_numbers(self):
         self.refuse(deformvolume.Error, "finite", mesh=Mesh(POINTS, CELLS, MOVED * numpy.nan))
-        self.refuse(deformvolume.Error, "finite", mesh=Mesh(POINTS, CELLS, MOVED * numpy.inf))
-        self.refuse(deformvolume.Error, "", mesh=Mesh(POINTS * numpy.nan, CELLS, MOVED))
         self.refuse(deformvolume.Error, "", affine=numpy.diag([1.0, numpy.nan, 1.0, 1.0]))
-        self.refuse(deformvolume.Error, "", mesh=Mesh(POINTS, CELLS, MOVED * 1e9))
         field = deformvolume.Field(numpy.full((2, 2, 2, 3), numpy.nan), AFFINE)
         self.refuse(deformvolume.Error, "finite", mesh=field)
         # NaN is a valid value of a volume.
@@ -96,18 +93,12 @@ class Misuse(unittest.TestCase):
             self.refuse((ValueError, deformvolume.Error), words, mesh=Mesh(POINTS, cells, MOVED))
 
         self.refuse(deformvolume.Error, "4", mesh=Mesh(POINTS, CELLS + 1, MOVED))
-        self.refuse(deformvolume.Error, "-1", mesh=Mesh(POINTS, CELLS - 1, MOVED))
         self.refuse(deformvolume.Error, "", mesh=Mesh(POINTS, numpy.zeros((0, 4), int), MOVED))
         self.refuse(deformvolume.Error, "", mesh=Mesh(numpy.zeros((0, 3)), CELLS, numpy.zeros((0, 3))))
-        refuse("no tetrahedra", [5], [[0, 1, 2]])  # a triangle
         refuse("no tetrahedra", [0], [[]])
         refuse("", [10], [[0, 1, 2]])  # a tetrahedron of three points
-        refuse("", [12], [[0, 1, 2, 3]])  # a hexahedron of four points
-        refuse("", [10, 24], [[0, 1, 2, 3], [0, 1, 2, 3]])
         refuse("Cell 1 is a polyhedron .* whose faces a Mesh does not have", [10, 42], [[0, 1, 2, 3]] * 2)
-        refuse("", [78], [[0, 1, 2, 3]])  # a Bezier cell
         refuse("one type for each cell", [10, 10], [[0, 1, 2, 3]])
-        refuse("9", [10], [[0, 1, 2, 9]])
         refuse("from 0 to 255", numpy.array([266]), [[0, 1, 2, 3]])
         refuse("from 0 to 255", [10.0], [[0, 1, 2, 3]])
         refuse("Cell 1 is", [10, 10], [[0, 1, 2, 3], [0.0, 1.0, 2.0, 3.5]])

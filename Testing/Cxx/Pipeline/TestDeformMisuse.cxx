@@ -183,25 +183,13 @@ TEST_F(DeformMisuse, Cells)
     mesh->InsertNextCell(VTK_TETRA, 4, good);
     this->GetFilter()->SetDeformationData(mesh);
   };
-  const struct
+  // HigherOrderCells.Tables compares the numbers of all types with VTK's.
+  for (const vtkIdType count : { 0, 3, 7, 9 })
   {
-    int Type;
-    const char* Name;
-    vtkIdType Points;
-  } shapes[] = { { VTK_TETRA, "tetra", 4 }, { VTK_VOXEL, "voxel", 8 },
-    { VTK_HEXAHEDRON, "hexahedron", 8 }, { VTK_WEDGE, "wedge", 6 }, { VTK_PYRAMID, "pyramid", 5 },
-    { VTK_PENTAGONAL_PRISM, "pentagonal prism", 10 },
-    { VTK_HEXAGONAL_PRISM, "hexagonal prism", 12 } };
-  for (const auto& shape : shapes)
-  {
-    for (const vtkIdType count : { vtkIdType(0), vtkIdType(3), shape.Points - 1, shape.Points + 1 })
-    {
-      insert(count, shape.Type);
-      const std::string expected = std::string("Cell 1 of the deformation mesh is a ") +
-        shape.Name + " with " + std::to_string(count) + " points instead of " +
-        std::to_string(shape.Points);
-      this->Expect("a cell with a wrong number of points", expected);
-    }
+    insert(count, VTK_HEXAHEDRON);
+    this->Expect("a cell with a wrong number of points",
+      "Cell 1 of the deformation mesh is a hexahedron with " + std::to_string(count) +
+        " points instead of 8");
   }
 
   points[4] = -1;

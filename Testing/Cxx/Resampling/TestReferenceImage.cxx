@@ -459,18 +459,8 @@ TEST(ReferenceImage, Misuse)
   spoilt->SetSpacing(1.0, 0.0, 1.0);
   fails(spoilt, "spacing of the reference image on axis y");
   spoilt = copy();
-  spoilt->SetSpacing(1.0, 1.0, std::numeric_limits<double>::quiet_NaN());
-  fails(spoilt, "spacing of the reference image on axis z");
-  spoilt = copy();
-  spoilt->SetOrigin(0.0, std::numeric_limits<double>::infinity(), 0.0);
-  fails(spoilt, "origin of the reference image");
-  spoilt = copy();
   const double singular[9] = { 1, 0, 0, 1, 0, 0, 0, 0, 1 };
   spoilt->SetDirectionMatrix(singular);
-  fails(spoilt, "direction matrix of the reference image");
-  spoilt = copy();
-  const double undefined[9] = { 1, 0, 0, 0, 1, 0, 0, 0, std::numeric_limits<double>::quiet_NaN() };
-  spoilt->SetDirectionMatrix(undefined);
   fails(spoilt, "direction matrix of the reference image");
   spoilt = copy();
   spoilt->SetSpacing(1e-6, 1e-6, 1e-6);
@@ -498,10 +488,6 @@ TEST(ReferenceImage, Misuse)
   };
   failsWith(
     [&](vtkImageData* v) { v->SetDirectionMatrix(singular); }, "direction matrix of the volume");
-  failsWith([](vtkImageData* v) { v->SetSpacing(1.0, 1.0, 0.0); }, "spacing of the volume");
-  failsWith([](vtkImageData* v)
-    { v->SetSpacing(std::numeric_limits<double>::quiet_NaN(), 1.0, 1.0); },
-    "spacing of the volume");
   failsWith(
     [](vtkImageData* v)
     {
