@@ -98,9 +98,11 @@ TEST(DeformMeshes, UnusedNodes)
       std::pair(glm::dvec3(50.0), glm::dvec3(1e30, 0.0, 0.0)) })
   {
     const Grid more = AddUnusedNodes(mesh, place, vector);
+    vtkNew<vtkMultiBlockDataSet> inner;
+    inner->SetBlock(1, more);
     vtkNew<vtkMultiBlockDataSet> blocks;
     blocks->SetBlock(0, vtkNew<vtkUnstructuredGrid>());
-    blocks->SetBlock(1, more);
+    blocks->SetBlock(1, inner);
     Deformed expected(volume, mesh);
     Deformed found(volume, more);
     Deformed composite(volume, blocks);

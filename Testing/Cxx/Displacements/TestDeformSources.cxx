@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Different descriptions of one deformation give the same result: displacements, meshes at rest and
-// deformed, composite datasets, cells other than tetrahedra, and displacement fields.
+// deformed, cells other than tetrahedra, and displacement fields. TestDeformMeshes.cxx has
+// composite datasets.
 #include "ArrayMaking.h"
 #include "FilterTesting.h"
 
-#include <vtkCellArray.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
-#include <vtkMultiBlockDataSet.h>
 
 #include <algorithm>
 
@@ -138,54 +137,6 @@ TEST(DeformSources, ChoiceOfDisplacements)
   mesh->GetPointData()->RemoveArray("doubles");
   mesh->Modified();
   EXPECT_EQ(GetExtent(deformed.Update()), (Extent{ { 1, 14, 0, 11, 0, 9 } }));
-}
-
-TEST(DeformSources, CompositeDatasets)
-{
-  auto volume = MakeFloatVolume();
-  auto whole = MakeMesh(volume, 4);
-  SetDisplacements(whole, Bend);
-  Deformed expected(volume, whole);
-  expected.Update();
-
-  // The cells are distributed to three blocks; one of them is nested. Another block is empty.
-  vtkNew<vtkMultiBlockDataSet> inner;
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  for (int part = 0; part < 3; ++part)
-  {
-    vtkNew<vtkUnstructuredGrid> grid;
-    grid->SetPoints(whole->GetPoints());
-    grid->GetPointData()->ShallowCopy(whole->GetPointData());
-    vtkNew<vtkCellArray> cells;
-    for (vtkIdType cell = part; cell < whole->GetNumberOfCells(); cell += 3)
-    {
-      cells->InsertNextCell(whole->GetCell(cell));
-    }
-    grid->SetCells(VTK_TETRA, cells);
-    if (part < 2)
-    {
-      inner->SetBlock(part, grid);
-    }
-    else
-    {
-      blocks->SetBlock(2, grid);
-    }
-  }
-  blocks->SetBlock(0, inner);
-  blocks->SetBlock(1, vtkNew<vtkUnstructuredGrid>());
-  Deformed composite(volume, blocks);
-  // Voxels on shared faces may be linked to another cell, whose affine map is equal there up to
-  // rounding.
-  Compare(composite.Update(), expected.Filter->GetOutput(), 41.0 * 3.0 / 256.0, 12);
-
-  vtkNew<vtkMultiBlockDataSet> restBlocks;
-  vtkNew<vtkMultiBlockDataSet> deformedBlocks;
-  auto moved = Warp(whole, Bend);
-  restBlocks->SetBlock(0, whole);
-  deformedBlocks->SetBlock(0, moved);
-  Deformed pair(volume, deformedBlocks);
-  pair.Filter->SetRestData(restBlocks);
-  Compare(pair.Update(), expected.Filter->GetOutput(), 41.0 * 3.0 / 256.0, 12);
 }
 
 TEST(DeformSources, OtherCells)
