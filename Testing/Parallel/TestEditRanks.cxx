@@ -34,7 +34,7 @@ struct Pipeline
     this->Cut->SetInputConnection(this->Source->GetOutputPort());
     this->Cut->SetSheetData(MakePlane(volume, glm::dvec3(30.5, -2.0, -2.0),
       glm::dvec3(0.0, 60.0, 0.0), glm::dvec3(0.0, 0.0, 25.0)));
-    const glm::dvec3 center = this->GetWorld(glm::dvec3(12.0, 20.0, 15.0));
+    const glm::dvec3 center = GetWorld(this->Volume, glm::dvec3(12.0, 20.0, 15.0));
     vtkNew<vtkSphere> sphere;
     sphere->SetCenter(center.x, center.y, center.z);
     sphere->SetRadius(6.0);
@@ -47,19 +47,12 @@ struct Pipeline
     this->Drag(0.0);
   }
 
-  glm::dvec3 GetWorld(const glm::dvec3& index) const
-  {
-    glm::dvec3 world;
-    this->Volume->TransformContinuousIndexToPhysicalPoint(&index.x, &world.x);
-    return world;
-  }
-
   /// Drags one side of the cut by a number of voxels.
   void Drag(double voxels)
   {
     const glm::dvec3 held(36.0, 24.0, 20.0);
-    this->ChainMail->SetHandlesData(MakeHandles({ { this->GetWorld(held),
-      this->GetWorld(held + glm::dvec3(voxels, 0.3 * voxels, -0.4 * voxels)) } }));
+    this->ChainMail->SetHandlesData(MakeHandles({ { GetWorld(this->Volume, held),
+      GetWorld(this->Volume, held + glm::dvec3(voxels, 0.3 * voxels, -0.4 * voxels)) } }));
   }
 
   vtkSmartPointer<vtkImageData> Volume;

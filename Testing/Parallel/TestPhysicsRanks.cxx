@@ -44,20 +44,15 @@ struct Pipeline
     this->Drag(0.0);
   }
 
-  glm::dvec3 GetWorld(const glm::dvec3& index) const
-  {
-    glm::dvec3 world;
-    this->Volume->TransformContinuousIndexToPhysicalPoint(&index.x, &world.x);
-    return world;
-  }
-
   void Drag(double voxels)
   {
     const glm::dvec3 held(40.0, 18.0, 15.0);
     const glm::dvec3 other(-3.0, 18.0, 15.0);
     this->Body->SetHandlesData(
-      MakeHandles({ { this->GetWorld(held), this->GetWorld(held + glm::dvec3(voxels, 0.0, 1.0)) },
-        { this->GetWorld(other), this->GetWorld(other - glm::dvec3(voxels, 0.0, 0.0)) } }));
+      MakeHandles({ { GetWorld(this->Volume, held),
+                      GetWorld(this->Volume, held + glm::dvec3(voxels, 0.0, 1.0)) },
+        { GetWorld(this->Volume, other),
+          GetWorld(this->Volume, other - glm::dvec3(voxels, 0.0, 0.0)) } }));
   }
 
   void Cut()

@@ -37,13 +37,6 @@ glm::dvec3 GetTuple(vtkDataArray* array, vtkIdType id)
   return tuple;
 }
 
-glm::dvec3 GetWorld(vtkImageData* volume, const glm::dvec3& index)
-{
-  glm::dvec3 world;
-  volume->TransformContinuousIndexToPhysicalPoint(&index.x, &world.x);
-  return world;
-}
-
 // Displacements decrease by half of the distance in world units along each axis of the volume.
 TEST(ChainMailDeformation, WorldForm)
 {

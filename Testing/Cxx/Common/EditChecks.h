@@ -47,8 +47,7 @@ inline vtkSmartPointer<vtkPolyData> MakeSheet(
   sheet->AllocateEstimate(static_cast<vtkIdType>(indices.size() / 3), 3);
   for (std::size_t i = 0; i < indices.size(); ++i)
   {
-    glm::dvec3 point;
-    volume->TransformContinuousIndexToPhysicalPoint(&indices[i].x, &point.x);
+    const glm::dvec3 point = GetWorld(volume, indices[i]);
     points->InsertNextPoint(&point.x);
     if (i % 3 == 2)
     {

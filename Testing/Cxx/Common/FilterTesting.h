@@ -174,6 +174,14 @@ inline void MovePoints(vtkPointSet* mesh, const WorldMap& map)
   mesh->GetPoints()->Modified();
 }
 
+/// The world position of a continuous index of an image.
+inline glm::dvec3 GetWorld(vtkImageData* image, const glm::dvec3& index)
+{
+  glm::dvec3 world;
+  image->TransformContinuousIndexToPhysicalPoint(&index.x, &world.x);
+  return world;
+}
+
 inline glm::dvec3 GetVector(vtkDataSet* dataSet, vtkIdType id)
 {
   glm::dvec3 vector;

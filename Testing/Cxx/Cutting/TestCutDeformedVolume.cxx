@@ -45,13 +45,8 @@ TEST(CutDeformedVolume, Deformed)
   rest.Filter->SetSheetData(MakePlaneX(volume, 3.5));
   const auto expected = rest.CopyMask();
   // The volume moves by two voxels along its own x axis.
-  glm::dvec3 move;
-  glm::dvec3 zero;
-  const glm::dvec3 two(2.0, 0.0, 0.0);
-  const glm::dvec3 none(0.0);
-  volume->TransformContinuousIndexToPhysicalPoint(&two.x, &move.x);
-  volume->TransformContinuousIndexToPhysicalPoint(&none.x, &zero.x);
-  move -= zero;
+  const glm::dvec3 move =
+    GetWorld(volume, glm::dvec3(2.0, 0.0, 0.0)) - GetWorld(volume, glm::dvec3(0.0));
   auto mesh = MakeMesh(volume, 4);
   auto restMesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
   restMesh->DeepCopy(mesh);

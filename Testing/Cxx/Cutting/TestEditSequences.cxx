@@ -208,12 +208,6 @@ private:
       this->GetNumber(EditedBox[2] - margin, EditedBox[3] + margin),
       this->GetNumber(EditedBox[4] - margin, EditedBox[5] + margin) };
   }
-  glm::dvec3 GetWorld(const glm::dvec3& index) const
-  {
-    glm::dvec3 world;
-    this->Volume->TransformContinuousIndexToPhysicalPoint(&index.x, &world.x);
-    return world;
-  }
 
   History<vtkCutVolume>::Edit MakeSheetEdit()
   {
@@ -230,7 +224,7 @@ private:
   History<vtkCarveVolume>::Edit MakeSphereEdit()
   {
     const auto sphere = vtkSmartPointer<vtkSphere>::New();
-    const glm::dvec3 center = this->GetWorld(this->GetIndex(0.0));
+    const glm::dvec3 center = GetWorld(this->Volume, this->GetIndex(0.0));
     sphere->SetCenter(center.x, center.y, center.z);
     sphere->SetRadius(this->GetNumber(0.5, 6.0));
     const int rule = static_cast<int>(this->Random() % 3);
@@ -253,7 +247,7 @@ private:
       const glm::dvec3 held = glm::round(this->GetIndex(0.0));
       const glm::dvec3 by(
         this->GetNumber(-most, most), this->GetNumber(-most, most), this->GetNumber(-most, most));
-      this->Handles.push_back({ this->GetWorld(held), this->GetWorld(held + by) });
+      this->Handles.push_back({ GetWorld(this->Volume, held), GetWorld(this->Volume, held + by) });
     }
   }
 

@@ -180,9 +180,8 @@ TEST(SmoothCut, TrianglesWithoutArea)
     for (const glm::dvec3& index : { glm::dvec3(4.3, -5.0, -5.0), glm::dvec3(4.8, 15.0, -5.0),
            glm::dvec3(5.1, -5.0, 15.0), glm::dvec3(5.6, 15.0, 15.0), glm::dvec3(4.8, 15.0, -5.0) })
     {
-      double point[3];
-      volume->TransformContinuousIndexToPhysicalPoint(&index.x, point);
-      points->InsertNextPoint(point);
+      const glm::dvec3 point = GetWorld(volume, index);
+      points->InsertNextPoint(&point.x);
     }
     auto sheet = vtkSmartPointer<vtkPolyData>::New();
     vtkNew<vtkCellArray> cells;

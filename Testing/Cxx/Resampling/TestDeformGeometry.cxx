@@ -92,9 +92,7 @@ void CheckTightExtent(vtkImageData* output, vtkImageData* volume, const World& w
   {
     const glm::dvec3 index(
       extent[corner & 1], extent[2 + (corner >> 1 & 1)], extent[4 + (corner >> 2)]);
-    glm::dvec3 rest;
-    volume->TransformContinuousIndexToPhysicalPoint(&index.x, &rest.x);
-    const glm::dvec3 moved = GetContinuousIndex(output, world.Move(rest));
+    const glm::dvec3 moved = GetContinuousIndex(output, world.Move(GetWorld(volume, index)));
     low = glm::min(low, moved);
     high = glm::max(high, moved);
   }
