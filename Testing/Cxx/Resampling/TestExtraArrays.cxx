@@ -325,6 +325,8 @@ TEST(ExtraArrays, BesideThinFields)
   const auto volume = MakeImage({ { 0, 11, 0, 11, 0, 11 } });
   AddScalars<float>(volume, "dose", [](const glm::dvec3&) { return 2.0; });
   AddScalars<double>(volume, "activity", [](const glm::dvec3& p) { return 5.0 + 0.1 * p.x; });
+  // With a third array the kernels are those of the other tests.
+  AddScalars<float>(volume, "linear", [](const glm::dvec3& p) { return p.y; });
   for (const bool isInverse : { false, true })
   {
     const int last = isInverse ? 17 : 11;
