@@ -48,13 +48,15 @@ vtkSmartPointer<vtkImageData> MakeDose(const Extent& extent = { { 0, 39, 0, 37, 
   return volume;
 }
 
-double Sum(vtkImageData* image, const char* name)
+// factor: the name of an array by which values are multiplied, or null.
+double Sum(vtkImageData* image, const char* name, const char* factor = nullptr)
 {
   vtkDataArray* array = image->GetPointData()->GetArray(name);
+  vtkDataArray* factors = factor ? image->GetPointData()->GetArray(factor) : nullptr;
   double sum = 0.0;
   for (vtkIdType id = 0; id < array->GetNumberOfTuples(); ++id)
   {
-    sum += array->GetComponent(id, 0);
+    sum += array->GetComponent(id, 0) * (factors ? factors->GetComponent(id, 0) : 1.0);
   }
   const double* spacing = image->GetSpacing();
   return sum * std::abs(spacing[0] * spacing[1] * spacing[2]);
@@ -249,16 +251,11 @@ TEST(ExtraArrays, Sums)
     {
       Derived subject(volume, deformation);
       subject.Filter->SetOutsideModeToExtrapolate();
-      Deformed plain(volume, deformation);
-      plain.Filter->SetOutsideModeToExtrapolate();
       for (const double spacing : { 0.0, 0.7 })
       {
-        for (auto* filter : { subject.Filter.Get(), plain.Filter.Get() })
-        {
-          filter->SetOutputSpacingMode(spacing > 0.0 ? vtkDeformVolumeFilter::CUSTOM_SPACING
-                                                     : vtkDeformVolumeFilter::VOLUME_SPACING);
-          filter->SetCustomSpacing(spacing, spacing, spacing);
-        }
+        subject.Filter->SetOutputSpacingMode(spacing > 0.0 ? vtkDeformVolumeFilter::CUSTOM_SPACING
+                                                           : vtkDeformVolumeFilter::VOLUME_SPACING);
+        subject.Filter->SetCustomSpacing(spacing, spacing, spacing);
         vtkImageData* output = subject.Expect("");
         for (const char* name : { "dose", "activity" })
         {
@@ -266,7 +263,7 @@ TEST(ExtraArrays, Sums)
           const double ratio = Sum(output, name) / sum;
           EXPECT_LT(std::abs(ratio - 1.0), 0.005) << name << ", " << deformation->GetClassName();
           // Without the division by the Jacobian the sum changes.
-          EXPECT_LT(Sum(plain.Update(), name), 0.8 * sum);
+          EXPECT_LT(Sum(output, name, "Jacobian"), 0.8 * sum);
         }
         double least = 2.0;
         for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
