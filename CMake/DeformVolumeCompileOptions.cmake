@@ -2,9 +2,11 @@
 # deformvolume_set_compile_options(<target>...): sets the compile options of all code of this project.
 
 # Without contraction, results on the host are bitwise equal on CPUs with and without fused
-# multiply-add.
+# multiply-add. __FILE__, which messages of VTK and GoogleTest contain, is relative to the sources:
+# otherwise, in a unity build, ccache does not find files that another clone has compiled.
 set(DEFORMVOLUME_COMPILE_OPTIONS
-  $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wall;-Wextra;-ffp-contract=off>)
+  "$<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-Wall;-Wextra;-ffp-contract=off>"
+  "$<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=>")
 
 function (deformvolume_set_compile_options)
   foreach (target IN LISTS ARGN)
