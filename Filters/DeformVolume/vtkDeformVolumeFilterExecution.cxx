@@ -208,7 +208,6 @@ void vtkDeformVolumeFilter::vtkInternals::SendVolume(
   const deformvolume::OutsideVoxels& outside = inputs.Mapped.Outside;
   const deformvolume::Stamp last = device.GetMasksStamp();
   deformvolume::Stamp stamp = deformvolume::GetMasksStamp(inputs.MaskedVolume);
-  const std::size_t sizeIfDefined = stamp.size();
   const bool isDefined = deformation.GetUndefinedVersion() == 0;
   if (!isDefined)
   {
@@ -234,7 +233,7 @@ void vtkDeformVolumeFilter::vtkInternals::SendVolume(
     masks.Blanked = blanked.data();
     masks.BlankedBits = 1;
   }
-  if (!isDefined || last.size() > sizeIfDefined)
+  if (!isDefined || last.size() > stamp.size())
   {
     masks.WrittenBlanked.reset();
   }
