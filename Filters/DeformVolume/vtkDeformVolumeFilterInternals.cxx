@@ -235,11 +235,6 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
     default:
       break;
   }
-  const deformvolume::Deformation& deformation = this->State->Deformation;
-  using Kinds = deformvolume::ResamplerRequest::Kinds;
-  request.Deformation = deformation.IsInverseField() ? Kinds::InverseField
-    : deformation.IsField()                          ? Kinds::ForwardField
-                                                     : Kinds::Mesh;
   request.Outside = this->GetOutside();
   request.HasSmoothCut = deformvolume::HasCut(volume);
   request.NeedsJacobian = this->GetExtraArrays().NeedsJacobian();
@@ -250,19 +245,8 @@ deformvolume::Resampling vtkDeformVolumeFilter::vtkInternals::ChooseResampler(
     throw Error("The resampler MESH_RASTERIZATION cannot do smooth cuts. Set SmoothCut of "
                 "vtkCutVolume to off, or Resampler to EXACT.");
   }
-  const deformvolume::Resampling method = deformvolume::ChooseResampler(request,
-    [&](deformvolume::Resampling tried)
-    {
-      try
-      {
-        checkMemory(tried);
-        return true;
-      }
-      catch (const deformvolume::MemoryError&)
-      {
-        return false;
-      }
-    });
+  const deformvolume::Resampling method =
+    deformvolume::ChooseResampler(this->State->Deformation, request, checkMemory);
   this->SetResamplerInUse(method);
   return method;
 }

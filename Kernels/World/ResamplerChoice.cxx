@@ -2,6 +2,8 @@
 #include "ResamplerChoice.h"
 
 #include "Error.h"
+#include "IndexDeformation.h"
+#include "MemoryError.h"
 
 #include <optional>
 #include <string>
@@ -18,9 +20,10 @@ struct Obstacle
   const char* Remedy;
 };
 
-std::optional<Obstacle> FindObstacle(const ResamplerRequest& request)
+std::optional<Obstacle> FindObstacle(
+  const IndexDeformation& deformation, const ResamplerRequest& request)
 {
-  if (request.Deformation == ResamplerRequest::Kinds::ForwardField)
+  if (deformation.IsField())
   {
     return Obstacle{ "forward displacement fields", "connect a tetrahedral mesh" };
   }
@@ -49,10 +52,10 @@ std::optional<Obstacle> FindObstacle(const ResamplerRequest& request)
 
 } // namespace
 
-Resampling ChooseResampler(
-  const ResamplerRequest& request, const std::function<bool(Resampling)>& fits)
+Resampling ChooseResampler(const IndexDeformation& deformation, const ResamplerRequest& request,
+  const std::function<void(Resampling)>& checkMemory)
 {
-  if (request.Deformation == ResamplerRequest::Kinds::InverseField)
+  if (deformation.IsInverseField())
   {
     if (request.Method && *request.Method != Resampling::MeshRasterization)
     {
@@ -69,7 +72,7 @@ Resampling ChooseResampler(
     }
     return Resampling::MeshRasterization;
   }
-  const std::optional<Obstacle> obstacle = FindObstacle(request);
+  const std::optional<Obstacle> obstacle = FindObstacle(deformation, request);
   if (obstacle && request.Method == Resampling::MeshRasterization)
   {
     throw Error(std::string("The resampler MESH_RASTERIZATION cannot do ") + obstacle->Subject +
@@ -79,6 +82,18 @@ Resampling ChooseResampler(
   {
     return *request.Method;
   }
+  const auto fits = [&](Resampling method)
+  {
+    try
+    {
+      checkMemory(method);
+      return true;
+    }
+    catch (const MemoryError&)
+    {
+      return false;
+    }
+  };
   return !obstacle && !fits(Resampling::Exact) && fits(Resampling::MeshRasterization)
     ? Resampling::MeshRasterization
     : Resampling::Exact;

@@ -12,18 +12,11 @@
 namespace deformvolume
 {
 
+class IndexDeformation;
+
 /// The input for the choice of a resampler.
 struct ResamplerRequest
 {
-  /// What deforms the volume.
-  enum class Kinds
-  {
-    Mesh,
-    ForwardField,
-    InverseField
-  };
-  /// What deforms the volume.
-  Kinds Deformation = Kinds::Mesh;
   /// The requested resampler; none: automatic choice.
   std::optional<Resampling> Method;
   /// The treatment of voxels outside the mesh or the field.
@@ -36,15 +29,15 @@ struct ResamplerRequest
   bool CountsFolds = false;
 };
 
-/// Returns the resampler for a deformation. fits: returns whether the memory suffices for a
-/// resampler. Throws an Error if the requested options cannot be combined.
+/// Returns the resampler for a deformation. checkMemory: throws a MemoryError if the memory does
+/// not suffice for a resampler. Throws an Error if the requested options cannot be combined.
 ///
 /// The automatic choice is Exact, because its values are those of the deformed sampling mesh. It is
 /// MeshRasterization if the memory suffices only for that (the sampling mesh of Exact takes about
 /// 20 bytes per voxel), and if it supports the deformation: a mesh, with voxels outside it
 /// discarded, without smooth cuts, Jacobians and fold counts.
-DEFORMVOLUME_EXPORT Resampling ChooseResampler(
-  const ResamplerRequest& request, const std::function<bool(Resampling)>& fits);
+DEFORMVOLUME_EXPORT Resampling ChooseResampler(const IndexDeformation& deformation,
+  const ResamplerRequest& request, const std::function<void(Resampling)>& checkMemory);
 
 } // namespace deformvolume
 

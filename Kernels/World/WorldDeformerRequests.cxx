@@ -6,8 +6,6 @@
 #include "Densities.h"
 #include "Fading.h"
 #include "FieldFolds.h"
-#include "MemoryError.h"
-#include "MemoryNeeds.h"
 #include "ParallelFor.h"
 #include "ResamplerChoice.h"
 #include "WorldBoxes.h"
@@ -186,27 +184,12 @@ Resampling WorldDeformer::ChooseMethod(
   const WorldRequest& request, const std::vector<VolumeArray>& arrays, const Extent& whole)
 {
   ResamplerRequest choice;
-  using Kinds = ResamplerRequest::Kinds;
-  choice.Deformation = this->IsMesh() ? Kinds::Mesh
-    : this->Field.IsInverseField()    ? Kinds::InverseField
-                                      : Kinds::ForwardField;
   choice.Outside = this->Outside;
   choice.HasSmoothCut = this->Masks.CutTetrahedra != nullptr;
   choice.NeedsJacobian = request.Jacobians != nullptr || this->HasDensities();
   choice.CountsFolds = request.FoldCounts != nullptr;
-  return ChooseResampler(choice,
-    [&](Resampling method)
-    {
-      try
-      {
-        this->CheckMemory(arrays, whole, method);
-        return true;
-      }
-      catch (const MemoryError&)
-      {
-        return false;
-      }
-    });
+  return ChooseResampler(this->GetDeformation(), choice,
+    [&](Resampling method) { this->CheckMemory(arrays, whole, method); });
 }
 
 void WorldDeformer::Send(const std::vector<VolumeArray>& arrays, Resampling method,
