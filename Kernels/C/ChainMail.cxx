@@ -59,18 +59,13 @@ std::vector<unsigned char> ReadMaterials(
     [&](std::int64_t first, std::int64_t last)
     {
       std::int64_t found = -1;
-      switch (array.Type)
-      {
-#define DEFORMVOLUME_CASE(name, type, cl)                                                          \
-  case ElementType::name:                                                                          \
-  {                                                                                                \
-    const auto* data = static_cast<const type*>(array.Data);                                       \
-    found = WriteMaterials(Values<type>{ data + first, data + last }, rule, &materials[first]);    \
-    break;                                                                                         \
-  }
-        DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
-#undef DEFORMVOLUME_CASE
-      }
+      DispatchElementType(array.Type,
+        [&](auto zero)
+        {
+          using T = decltype(zero);
+          const auto* data = static_cast<const T*>(array.Data);
+          found = WriteMaterials(Values<T>{ data + first, data + last }, rule, &materials[first]);
+        });
       if (found >= 0)
       {
         Lower(without, first + found);

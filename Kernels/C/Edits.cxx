@@ -114,17 +114,13 @@ LabelReader MakeLabelReader(const VolumeArray& labels)
 {
   return [&labels](std::int64_t voxel, std::int64_t count, double* read)
   {
-    switch (labels.Type)
-    {
-#define DEFORMVOLUME_CASE(name, type, cl)                                                          \
-  case ElementType::name:                                                                          \
-    std::transform(static_cast<const type*>(labels.Data) + voxel,                                  \
-      static_cast<const type*>(labels.Data) + voxel + count, read,                                 \
-      [](type label) { return static_cast<double>(label); });                                      \
-    break;
-      DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
-#undef DEFORMVOLUME_CASE
-    }
+    DispatchElementType(labels.Type,
+      [&](auto zero)
+      {
+        const auto* first = static_cast<const decltype(zero)*>(labels.Data) + voxel;
+        std::transform(
+          first, first + count, read, [](auto label) { return static_cast<double>(label); });
+      });
   };
 }
 

@@ -29,18 +29,27 @@ enum class ElementType
 #undef DEFORMVOLUME_ENUMERATOR
 };
 
-/// Bytes of one element.
-inline std::size_t GetElementSize(ElementType type)
+/// Calls a function with a zero of an element type.
+template <typename Function>
+void DispatchElementType(ElementType type, const Function& function)
 {
   switch (type)
   {
 #define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
   case ElementType::name:                                                                          \
-    return sizeof(ctype);
+    function(ctype());                                                                             \
+    break;
     DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
 #undef DEFORMVOLUME_CASE
   }
-  return 0;
+}
+
+/// Bytes of one element.
+inline std::size_t GetElementSize(ElementType type)
+{
+  std::size_t size = 0;
+  DispatchElementType(type, [&](auto zero) { size = sizeof(zero); });
+  return size;
 }
 
 } // namespace deformvolume

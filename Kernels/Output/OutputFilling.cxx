@@ -42,15 +42,10 @@ void LaunchSteps(
 
 ElementBytes GetBackground(const VolumeArray& array)
 {
-  switch (array.Type)
-  {
-#define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
-  case ElementType::name:                                                                          \
-    return ElementBytes::Of(ClampTo<ctype>(array.Background));
-    DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
-#undef DEFORMVOLUME_CASE
-  }
-  return {};
+  ElementBytes background;
+  DispatchElementType(array.Type,
+    [&](auto zero) { background = ElementBytes::Of(ClampTo<decltype(zero)>(array.Background)); });
+  return background;
 }
 
 void LaunchHeavyItems(KernelLauncher& launcher, const cl::Kernel& kernel, std::size_t items)

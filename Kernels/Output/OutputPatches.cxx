@@ -80,15 +80,12 @@ void FillBackground(
 void ClearArray(
   const DeformRequest& request, const PatchRow& patches, void* values, const VolumeArray& array)
 {
-  switch (array.Type)
-  {
-#define DEFORMVOLUME_CASE(name, ctype, cl)                                                         \
-  case ElementType::name:                                                                          \
-    FillBackground(request, patches, values, array.Components, ClampTo<ctype>(array.Background));  \
-    break;
-    DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
-#undef DEFORMVOLUME_CASE
-  }
+  DispatchElementType(array.Type,
+    [&](auto zero)
+    {
+      FillBackground(
+        request, patches, values, array.Components, ClampTo<decltype(zero)>(array.Background));
+    });
 }
 
 // Joins consecutive patches of a row. patches: their numbers, in ascending order.

@@ -118,17 +118,13 @@ VolumeArray WorldDeformer::GetSource(std::size_t array)
     const auto values = static_cast<std::size_t>(GetNumberOfPoints(this->Volume->PointExtent)) *
       static_cast<std::size_t>(source.Components);
     copy.resize(values);
-    switch (source.Type)
-    {
-#define DEFORMVOLUME_CASE(name, type, cl)                                                          \
-  case ElementType::name:                                                                          \
-    std::transform(static_cast<const type*>(source.Data),                                          \
-      static_cast<const type*>(source.Data) + values, copy.begin(),                                \
-      [](type value) { return static_cast<float>(value); });                                       \
-    break;
-      DEFORMVOLUME_ELEMENT_TYPES(DEFORMVOLUME_CASE)
-#undef DEFORMVOLUME_CASE
-    }
+    DispatchElementType(source.Type,
+      [&](auto zero)
+      {
+        const auto* first = static_cast<const decltype(zero)*>(source.Data);
+        std::transform(first, first + values, copy.begin(),
+          [](auto value) { return static_cast<float>(value); });
+      });
   }
   VolumeArray floats = MakeFloatArray(copy, source.Background);
   floats.Components = source.Components;
