@@ -166,7 +166,7 @@ WorldRequest MakeRequest(const dv_request& given)
   request.Interpolation =
     given.interpolation == DV_CUBIC ? Interpolation::Cubic : Interpolation::Linear;
   request.IsNearest = given.interpolation == DV_NEAREST;
-  request.IsIncremental = given.incremental != 0;
+  request.Incremental = given.incremental != 0;
   GetProduct(given.number_of_outputs, sizeof(void*), "outputs");
   if (given.number_of_outputs > 0)
   {

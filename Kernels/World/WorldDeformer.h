@@ -54,36 +54,23 @@ struct WorldArray : VolumeArray
   bool IsDensity = false;
 };
 
-/// What WorldDeformer::Deform() computes, and where it writes the results.
-struct WorldRequest
+/// What WorldDeformer::Deform() computes, and where it writes the results. An empty OutputExtent is
+/// the whole output. Incremental: if the next request has the same memory, this memory must still
+/// contain the output of this call; not with RestPositions, Jacobians, FoldCounts or densities. See
+/// WorldArray::IsDensity for the types of Outputs. FoldCounts: 1 for covered voxels where nothing
+/// overlaps. WorldDeformer sets the other members of DeformRequest.
+struct WorldRequest : DeformRequest
 {
-  /// Empty: the whole output.
-  Extent OutputExtent{ { 0, -1, 0, -1, 0, -1 } };
-  deformvolume::Interpolation Interpolation = deformvolume::Interpolation::Linear;
   /// Whether all arrays are resampled as if they were categorical.
   bool IsNearest = false;
-  /// Whether the next call may write only the voxels that changed. If the next request has the same
-  /// memory, this memory must still contain the output of this call. Cannot be combined
-  /// with RestPositions, Jacobians, FoldCounts or densities.
-  bool IsIncremental = false;
-  /// Memory for the output of each array (see WorldArray::IsDensity for the types of densities),
-  /// and for the coverage: one byte per voxel, 1 if the deformed volume covers the voxel, otherwise
-  /// 0.
-  std::vector<void*> Outputs;
-  signed char* Coverage = nullptr;
   ///@{
   /// Memory for additional arrays, or null. RestPositions: three floats per voxel, the position at
   /// rest, in world coordinates, of the point of the volume that is deformed to the voxel.
   /// Jacobians: one float per voxel, the determinant of the derivative of deformed positions.
-  /// FoldCounts: the number of tetrahedra of the sampling mesh that hold the voxel.
   float* RestPositions = nullptr;
   float* Jacobians = nullptr;
-  std::uint32_t* FoldCounts = nullptr;
   ///@}
   double Background = 0.0; // of RestPositions and Jacobians
-  /// Called with the completed fraction, only in the thread that called Deform(). If it returns
-  /// false, Deform() throws Aborted.
-  std::function<bool(double)> Progress;
 };
 
 /// What WorldDeformer::Deform() has done.

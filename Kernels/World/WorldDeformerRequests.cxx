@@ -207,9 +207,8 @@ void WorldDeformer::Send(const std::vector<VolumeArray>& arrays, Resampling meth
 DeformRequest WorldDeformer::MakeRequest(
   const WorldRequest& request, const Extent& whole, Resampling method)
 {
-  DeformRequest made;
+  DeformRequest made = static_cast<const DeformRequest&>(request);
   made.Method = method;
-  made.Interpolation = request.Interpolation;
   made.OutputExtent = GetNumberOfPoints(request.OutputExtent) > 0 ? request.OutputExtent : whole;
   made.WholeOutputExtent = whole;
   if (!Contains(whole, made.OutputExtent))
@@ -217,8 +216,6 @@ DeformRequest WorldDeformer::MakeRequest(
     throw Error("The extent " + DescribeExtent(made.OutputExtent) +
       " was asked for, which is not within that of the output, " + DescribeExtent(whole) + ".");
   }
-  made.Outputs = request.Outputs;
-  made.Coverage = request.Coverage;
   const auto voxels = static_cast<std::size_t>(GetNumberOfPoints(made.OutputExtent));
   for (std::size_t axis = 0; axis < 3 && request.RestPositions; ++axis)
   {
@@ -236,10 +233,8 @@ DeformRequest WorldDeformer::MakeRequest(
   if (request.FoldCounts)
   {
     std::fill_n(request.FoldCounts, voxels, 0U);
-    made.FoldCounts = request.FoldCounts;
   }
-  made.Incremental = request.IsIncremental;
-  if (request.IsIncremental && this->LastOutputs == request.Outputs &&
+  if (request.Incremental && this->LastOutputs == request.Outputs &&
     this->LastCoverage == request.Coverage && this->LastExtent == made.OutputExtent)
   {
     made.LastOutputs.assign(request.Outputs.begin(), request.Outputs.end());
@@ -262,7 +257,7 @@ WorldReport WorldDeformer::Deform(const WorldRequest& request)
       ". Give room for each.");
   }
   const bool hasDensities = this->HasDensities();
-  if (request.IsIncremental &&
+  if (request.Incremental &&
     (request.RestPositions || request.Jacobians || request.FoldCounts || hasDensities))
   {
     throw Error("Rest positions, Jacobians, fold counts and densities are made of the whole "
@@ -289,7 +284,7 @@ WorldReport WorldDeformer::Deform(const WorldRequest& request)
   }
   this->LastOutputs.clear();
   static_cast<DeformReport&>(report) = this->Session.Deform(made);
-  if (request.IsIncremental)
+  if (request.Incremental)
   {
     this->LastOutputs = request.Outputs;
     this->LastCoverage = request.Coverage;
