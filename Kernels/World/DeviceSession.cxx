@@ -168,7 +168,7 @@ void DeviceSession::SetNodes(const IndexDeformation& deformation, const PointRan
   this->Deformer.SetNodeDisplacements(displacements, changes, true);
 }
 
-void DeviceSession::SendMesh(const MeshAtRest& mesh, const StaticMapping& mapping, bool byRuns)
+void DeviceSession::SendMesh(const MeshAtRest& mesh, const StaticMapping& mapping)
 {
   const std::vector<Tetrahedron>* tetrahedra = &mesh.Tetrahedra;
   std::size_t nodes = mesh.Points.size();
@@ -179,7 +179,7 @@ void DeviceSession::SendMesh(const MeshAtRest& mesh, const StaticMapping& mappin
     tetrahedra = &this->Faded.GetTetrahedra();
     nodes = this->Faded.GetNumberOfNodes();
   }
-  if (byRuns)
+  if (mapping.Links.empty())
   {
     this->Deformer.SetMesh(
       tetrahedra->data(), tetrahedra->size(), nodes, mapping.Runs, &mapping.Boundary);
@@ -228,7 +228,7 @@ void DeviceSession::SetMesh(const IndexDeformation& deformation, MappingCache& m
   if (!isCurrent)
   {
     mapping.Update(mesh, volume, progress);
-    this->Send([&] { this->SendMesh(mesh, mapping.GetMapping(), mapping.IsByRuns()); });
+    this->Send([&] { this->SendMesh(mesh, mapping.GetMapping()); });
     this->SentMapping = mapping.GetVersion();
     this->CoincidentNodesAreSent = false;
   }

@@ -92,7 +92,7 @@ private:
   /// all.
   void SetNodes(const IndexDeformation& deformation, const PointRanges* changes);
   /// Sends a mesh and its mapping.
-  void SendMesh(const MeshAtRest& mesh, const StaticMapping& mapping, bool byRuns);
+  void SendMesh(const MeshAtRest& mesh, const StaticMapping& mapping);
   /// Sends the changed connectivity of a mesh that was sent before.
   void SendConnectivity(const IndexDeformation& deformation, const StaticMapping& mapping);
   /// Whether changes of the connectivity can be sent without the whole mesh.

@@ -113,20 +113,4 @@ WorldField MakeWorldField(const ImageGeometry& grid)
   return field;
 }
 
-void SetOutside(const OutsideVoxels& outside, const glm::dvec3& spacing, DisplacementField& field)
-{
-  field.Extrapolate = !outside.AreDiscarded();
-  if (outside.AreKept())
-  {
-    // A FadeDistance of 0 would give an infinite value. With this limit the displacement fades
-    // within 1e-6 of the distance between points.
-    constexpr double most = 1e6;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-    {
-      const double inverseDistance = spacing[static_cast<int>(axis)] / outside.FadeDistance;
-      field.Fading[axis] = std::min(inverseDistance, most);
-    }
-  }
-}
-
 } // namespace deformvolume

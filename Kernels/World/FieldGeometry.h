@@ -3,14 +3,10 @@
 #define DeformVolumeFieldGeometry_h
 
 #include "DeformVolumeExport.h"
-#include "DisplacementField.h"
 #include "Extent.h"
 #include "FieldPointMap.h"
 #include "ImageGeometry.h"
-#include "OutsideVoxels.h"
 #include "VoxelGrid.h"
-
-#include <glm/vec3.hpp>
 
 #include <array>
 
@@ -34,10 +30,6 @@ DEFORMVOLUME_EXPORT ImageGeometry GetGridAtRest(const ImageGeometry& volume);
 
 /// Returns a field of points in world coordinates, which needs vectors.
 DEFORMVOLUME_EXPORT WorldField MakeWorldField(const ImageGeometry& grid);
-
-/// Sets how a field treats voxels outside it. spacing: the spacing of the field, in world units.
-DEFORMVOLUME_EXPORT void SetOutside(
-  const OutsideVoxels& outside, const glm::dvec3& spacing, DisplacementField& field);
 
 } // namespace deformvolume
 

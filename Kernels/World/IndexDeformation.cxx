@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IndexDeformation.h"
 
-#include "FieldGeometry.h"
 #include "ParallelFor.h"
 
 #include <algorithm>
@@ -40,7 +39,15 @@ DisplacementField IndexDeformation::GetFieldShape(const OutsideVoxels& outside) 
   {
     field.ToDisplacement = this->MatrixOnDevice;
   }
-  SetOutside(outside, this->FieldSpacing, field);
+  field.Extrapolate = !outside.AreDiscarded();
+  for (int axis = 0; axis < 3 && outside.AreKept(); ++axis)
+  {
+    // A FadeDistance of 0 would give an infinite value. With this limit the displacement fades
+    // within 1e-6 of the distance between points.
+    constexpr double most = 1e6;
+    field.Fading[static_cast<std::size_t>(axis)] =
+      std::min(this->FieldSpacing[axis] / outside.FadeDistance, most);
+  }
   return field;
 }
 

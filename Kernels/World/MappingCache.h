@@ -60,8 +60,6 @@ public:
   const StaticMapping& GetMapping() const { return this->Mapping; }
   /// Returns the links of the mapping; empty if it has runs.
   const std::vector<VertexLink>& GetLinks() const { return this->Mapping.Links; }
-  /// Whether the mapping has runs and not links.
-  bool IsByRuns() const { return this->RunBytes > 0; }
   /// Whether the mapping has links or runs. False after ReleaseVoxels().
   bool HasLinksOrRuns() const
   {
