@@ -29,6 +29,15 @@ inline WorldDeformer& GetDeformer(dv_deformer* deformer)
   return deformer->Deformer;
 }
 
+/// Throws an Error if the deformer has no volume. what: what needs it.
+inline void CheckVolume(const dv_deformer& deformer, const char* what)
+{
+  if (GetNumberOfPoints(deformer.Volume.PointExtent) == 0)
+  {
+    throw Error(std::string("There is no volume. Set one before ") + what + ".");
+  }
+}
+
 /// Returns the masks of the deformer, with its edits.
 inline WorldMasks GetMasks(const dv_deformer& deformer)
 {

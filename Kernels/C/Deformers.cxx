@@ -199,10 +199,7 @@ std::int32_t SetMasks(dv_deformer* deformer, const Change& change)
     [&]
     {
       WorldDeformer& world = GetDeformer(deformer);
-      if (GetNumberOfPoints(deformer->Volume.PointExtent) == 0)
-      {
-        throw Error("There is no volume. Set one before its masks.");
-      }
+      CheckVolume(*deformer, "its masks");
       WorldMasks masks = deformer->Masks;
       change(masks);
       if (deformer->Edits)
@@ -279,10 +276,7 @@ std::int32_t dv_set_arrays(dv_deformer* deformer, std::int32_t count, const dv_a
           made.push_back({ MakeArray(array, "Array " + std::to_string(i)), array.density != 0 });
         }
       }
-      if (GetNumberOfPoints(deformer->Volume.PointExtent) == 0)
-      {
-        throw Error("There is no volume. Set one before its arrays.");
-      }
+      CheckVolume(*deformer, "its arrays");
       world.SetArrays(made);
     });
 }

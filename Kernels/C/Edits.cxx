@@ -22,14 +22,6 @@ static_assert(static_cast<int>(CarvingRule::Centroid) == DV_CARVE_CENTROID &&
     static_cast<int>(CarvingRule::Minimal) == DV_CARVE_MINIMAL,
   "rules are numbered alike");
 
-void CheckVolumeIsSet(const dv_deformer& deformer)
-{
-  if (GetNumberOfPoints(deformer.Volume.PointExtent) == 0)
-  {
-    throw Error("There is no volume. Set one before it is edited.");
-  }
-}
-
 WorldSheet ReadSurface(const dv_surface* given, const char* name)
 {
   const dv_surface surface = ReadStruct(given, name);
@@ -76,7 +68,7 @@ std::int32_t Edit(dv_deformer* deformer, const dv_edit* options, const Find& fin
     [&]
     {
       WorldDeformer& world = GetDeformer(deformer);
-      CheckVolumeIsSet(*deformer);
+      CheckVolume(*deformer, "it is edited");
       std::unique_ptr<WorldEdits> first;
       if (!deformer->Edits)
       {
