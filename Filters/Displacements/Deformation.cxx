@@ -12,9 +12,10 @@
 namespace deformvolume
 {
 
-glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor)
+glm::dmat3 GetToDisplacement(const DeformationSource& source)
 {
-  return GetToDisplacement(source.Volume, source.ToOutput, factor);
+  return GetToDisplacement(
+    source.Volume, source.ToOutput, source.Rest ? 1.0 : source.DisplacementScale);
 }
 
 void Deformation::Read(const DeformationSource& source)
@@ -64,8 +65,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
   vtkDataArray* only = !ofPoints && shape.size() == 1 && derived.GetCount() == 0
     ? source.Selector(shape.front())
     : nullptr;
-  if (this->UseVectorsOnDevice(
-        only, shape.front()->GetNumberOfPoints(), source.DisplacementScale, source))
+  if (this->UseVectorsOnDevice(only, shape.front()->GetNumberOfPoints(), source))
   {
     this->RememberVectors(stamp, source, false);
     return;
@@ -90,7 +90,7 @@ void Deformation::ReadMesh(const DeformationSource& source)
       }
       this->CheckFaults(shape, source);
     },
-    ofPoints ? 1.0 : source.DisplacementScale, source, &derived);
+    source, &derived);
   this->RememberVectors(stamp, source, false);
 }
 
@@ -140,7 +140,7 @@ PointRanges Deformation::GetChanges(std::uint64_t version) const
     : PointRanges{ { { 0, static_cast<std::size_t>(GetNumberOfPoints(this->FieldInPlace)) } } };
 }
 
-void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read, double factor,
+void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read,
   const DeformationSource& source, const DerivedNodes* derived)
 {
   // If a call below throws, the vectors belong to no source.
@@ -150,7 +150,7 @@ void Deformation::ReplaceVectors(std::size_t count, const VectorSource& read, do
   {
     this->Memories.clear();
   }
-  this->SetDisplacements(count, read, GetToDisplacement(source, factor), derived);
+  this->SetDisplacements(count, read, GetToDisplacement(source), derived);
 }
 
 void Deformation::RememberVectors(const Stamp& stamp, const DeformationSource& source, bool field)

@@ -22,8 +22,8 @@ class vtkImageData;
 namespace deformvolume
 {
 
-/// See VectorConversion.h.
-glm::dmat3 GetToDisplacement(const DeformationSource& source, double factor);
+/// Returns the matrix that converts the vectors of a source to displacements.
+glm::dmat3 GetToDisplacement(const DeformationSource& source);
 
 /// A deformation that is read from VTK data. Only data that have changed are read again.
 class Deformation : public IndexDeformation
@@ -88,16 +88,15 @@ private:
   bool UseFieldInPlace(vtkDataArray* array, const DeformationSource& source);
   /// Uses the vectors of an array in the memory of a device. Returns false if the array has none
   /// there.
-  bool UseVectorsOnDevice(
-    vtkDataArray* array, vtkIdType points, double factor, const DeformationSource& source);
-  void ForgetVectorsOnDevice();
+  bool UseVectorsOnDevice(vtkDataArray* array, vtkIdType points, const DeformationSource& source);
+  void ConvertField(vtkDataArray* array, const DeformationSource& source);
   void RememberVectors(const Stamp& stamp, const DeformationSource& source, bool field);
   bool VectorsAreCurrent(const Stamp& stamp, const DeformationSource& source, bool field) const;
   /// Whether the conversion from vectors to displacements is the same as at the last reading.
   bool HasSameUnits(const DeformationSource& source) const;
-  /// Calls SetDisplacements() for vectors in world units, times a factor.
-  void ReplaceVectors(std::size_t count, const VectorSource& read, double factor,
-    const DeformationSource& source, const DerivedNodes* derived = nullptr);
+  /// Calls SetDisplacements() for vectors in world units.
+  void ReplaceVectors(std::size_t count, const VectorSource& read, const DeformationSource& source,
+    const DerivedNodes* derived = nullptr);
 
   /// Throws an Error if tetrahedra use a node with a faulty vector.
   void CheckFaults(const MeshParts& shape, const DeformationSource& source) const;
@@ -115,7 +114,6 @@ private:
   std::uint64_t VersionBeforeChanges = NoVersion;
 
   vtkSmartPointer<vtkDataArray> ArrayOnDevice;
-  double FactorOnDevice = 1.0;
   bool IsOnHost = true; // whether Vectors are those of OnDevice
 
   // The source that the members above were read from.

@@ -103,27 +103,16 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
   this->UndefinedPoints = std::move(undefined);
   const bool areDefined = this->UndefinedPoints.empty();
   this->Memories.clear();
-  if (this->UseVectorsOnDevice(source.FieldIsInverse || !areDefined ? nullptr : array,
-        image->GetNumberOfPoints(), source.DisplacementScale, source))
+  if (this->UseVectorsOnDevice(
+        source.FieldIsInverse || !areDefined ? nullptr : array, image->GetNumberOfPoints(), source))
   {
     this->RememberVectors(stamp, source, true);
     return;
   }
   if (!areDefined || !this->UseFieldInPlace(array, source))
   {
-    this->Faults.Reset();
     ++this->VectorsVersion;
-    this->ReplaceVectors(
-      static_cast<std::size_t>(array->GetNumberOfTuples()),
-      [&](const VectorTaker& take)
-      {
-        ReadFieldVectors(array, this->UndefinedPoints, take);
-        if (this->Faults.MayHaveAny())
-        {
-          ThrowTooFar();
-        }
-      },
-      source.DisplacementScale, source);
+    this->ConvertField(array, source);
   }
   for (std::size_t i = 0; i < this->UndefinedPoints.size() && source.FieldIsInverse; ++i)
   {
@@ -133,6 +122,22 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
     }
   }
   this->RememberVectors(stamp, source, true);
+}
+
+void Deformation::ConvertField(vtkDataArray* array, const DeformationSource& source)
+{
+  this->Faults.Reset();
+  this->ReplaceVectors(
+    static_cast<std::size_t>(array->GetNumberOfTuples()),
+    [&](const VectorTaker& take)
+    {
+      ReadFieldVectors(array, this->UndefinedPoints, take);
+      if (this->Faults.MayHaveAny())
+      {
+        ThrowTooFar();
+      }
+    },
+    source);
 }
 
 std::vector<unsigned char> Deformation::FindUndefinedVoxels(
@@ -212,7 +217,7 @@ bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& 
   field.Dimensions = this->FieldDimensions;
   field.Vectors = floats;
   field.IndexToField = this->IndexToField;
-  field.ToDisplacement = GetRows(GetToDisplacement(source, source.DisplacementScale));
+  field.ToDisplacement = GetRows(GetToDisplacement(source));
   if (!AreVoxelsPoints(voxelGrid, field))
   {
     return false;
@@ -227,7 +232,7 @@ bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& 
     this->ScanInPlace.Check(voxelGrid, field, written ? &*written : nullptr);
   if (!state.IsUsable)
   {
-    return false; // ReplaceVectors() throws an Error that says what is wrong
+    return false; // ConvertField() throws an Error that says what is wrong
   }
   this->ArrayInPlace = array;
   this->TimeInPlace = array->GetMTime();

@@ -2,9 +2,6 @@
 // The part of Deformation for vectors on a device.
 #include "Deformation.h"
 
-#include "FieldReading.h"
-#include "VectorConversion.h"
-
 #include "vtkDeviceVectorArray.h"
 
 #include <utility>
@@ -13,7 +10,7 @@ namespace deformvolume
 {
 
 bool Deformation::UseVectorsOnDevice(
-  vtkDataArray* array, vtkIdType points, double factor, const DeformationSource& source)
+  vtkDataArray* array, vtkIdType points, const DeformationSource& source)
 {
   auto* const vectors = vtkDeviceVectorArray::SafeDownCast(array);
   std::shared_ptr<DeviceVectors> there;
@@ -21,28 +18,19 @@ bool Deformation::UseVectorsOnDevice(
   {
     there = vectors->GetVectors(source.Device);
   }
-  this->ForgetVectorsOnDevice();
-  if (!there)
+  this->OnDevice = std::move(there);
+  this->ArrayOnDevice = this->OnDevice ? vectors : nullptr;
+  this->IsOnHost = !this->OnDevice;
+  if (this->IsOnHost)
   {
     return false;
   }
   this->VectorsStamp.clear();
   this->FieldInPlace = DisplacementField();
   this->VectorsAreWhole = false; // Vectors on the host are of another version
-  this->OnDevice = std::move(there);
-  this->ArrayOnDevice = vectors;
-  this->FactorOnDevice = factor;
-  this->IsOnHost = false;
-  this->MatrixOnDevice = GetRows(GetToDisplacement(source, factor));
+  this->MatrixOnDevice = GetRows(GetToDisplacement(source));
   ++this->VectorsVersion;
   return true;
-}
-
-void Deformation::ForgetVectorsOnDevice()
-{
-  this->OnDevice.reset();
-  this->ArrayOnDevice = nullptr;
-  this->IsOnHost = true;
 }
 
 void Deformation::BringToHost()
@@ -52,26 +40,24 @@ void Deformation::BringToHost()
     return;
   }
   Stamp stamp = this->VectorsStamp;
-  this->Faults.Reset();
   this->Memories.clear();
-  this->ReplaceVectors(
-    static_cast<std::size_t>(this->ArrayOnDevice->GetNumberOfTuples()),
-    [&](const VectorTaker& take)
-    {
-      if (!this->Field)
+  if (this->Field)
+  {
+    this->ConvertField(this->ArrayOnDevice, this->VectorsSource);
+  }
+  else
+  {
+    this->Faults.Reset();
+    this->ReplaceVectors(
+      static_cast<std::size_t>(this->ArrayOnDevice->GetNumberOfTuples()),
+      [&](const VectorTaker& take)
       {
         ReadVectors(this->ArrayOnDevice, take, "Displacement", "", nullptr,
           [&](vtkIdType node) { this->Faults.Mark(node, NodeFaults::NotFinite); });
         this->CheckFaults({}, this->VectorsSource);
-        return;
-      }
-      ReadFieldVectors(this->ArrayOnDevice, {}, take);
-      if (this->Faults.MayHaveAny())
-      {
-        ThrowTooFar();
-      }
-    },
-    this->FactorOnDevice, this->VectorsSource);
+      },
+      this->VectorsSource);
+  }
   this->VectorsStamp = std::move(stamp);
   this->IsOnHost = true;
 }
