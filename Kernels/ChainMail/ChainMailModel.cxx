@@ -108,7 +108,7 @@ void ChainMailModel::Internals::CheckMemory(const ChainMailBlocks& blocks)
     throw Error("The volume has too many voxels for ChainMail: at most 4,294,967,295. Use a "
                 "smaller part of it, or a coarser volume.");
   }
-  this->Budget.CheckRoomFor(needed, "on the device");
+  this->Budget.CheckRoomFor(needed, "on the device", "Use a smaller volume");
 }
 
 void ChainMailModel::Internals::WriteLinks(const std::vector<std::uint32_t>& list)

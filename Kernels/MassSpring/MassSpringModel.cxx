@@ -120,7 +120,7 @@ void MassSpringModel::Internals::Make(
   const std::uint64_t needed =
     MassSpringState::GetNeededMemory(body.Points.size(), body.Tetrahedra.size());
   const std::uint64_t held = this->State ? this->State->GetMemory() : 0;
-  this->Budget.CheckRoomFor(needed - std::min(held, needed), "on the device");
+  this->Budget.CheckRoomFor(needed - std::min(held, needed), "on the device", "Use a coarser mesh");
   this->Forget();
   this->Body = body;
   this->CubeEdge = cubeEdge;

@@ -53,20 +53,20 @@ bool MemoryBudget::HasRoomFor(std::uint64_t bytes)
   return this->CountHeld() + bytes <= this->GetUsable();
 }
 
-void MemoryBudget::CheckRoomFor(std::uint64_t bytes, const char* where)
+void MemoryBudget::CheckRoomFor(std::uint64_t bytes, const char* where, const char* remedy)
 {
   this->MeasureSystemMemory();
-  CheckBytes(this->CountHeld() + bytes, this->GetUsable(), where);
+  CheckBytes(this->CountHeld() + bytes, this->GetUsable(), where, remedy);
 }
 
-void MemoryBudget::CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where)
+void MemoryBudget::CheckBytes(
+  std::uint64_t needed, std::uint64_t available, const char* where, const char* remedy)
 {
   if (needed > available)
   {
     throw MemoryError(std::string("Not enough memory ") + where + ": " + std::to_string(needed) +
-      " bytes are needed and " + std::to_string(available) +
-      " are available. Use a smaller volume, fewer arrays or smaller output bounds, raise the "
-      "memory limit if one is set, or choose another device.");
+      " bytes are needed and " + std::to_string(available) + " are available. " + remedy +
+      ", raise the memory limit if one is set, or choose another device.");
   }
 }
 

@@ -49,11 +49,16 @@ public:
 
   /// Whether `bytes` can be allocated in addition to the memory that is held now.
   bool HasRoomFor(std::uint64_t bytes);
-  /// Throws Error unless HasRoomFor(bytes). where: as in CheckBytes().
-  void CheckRoomFor(std::uint64_t bytes, const char* where);
+  /// What to do if a deformed volume needs too much memory.
+  static constexpr const char* VolumeRemedy =
+    "Use a smaller volume, fewer arrays or smaller output bounds";
+  /// Throws Error unless HasRoomFor(bytes). where, remedy: as in CheckBytes().
+  void CheckRoomFor(std::uint64_t bytes, const char* where, const char* remedy = VolumeRemedy);
 
   /// Throws Error if needed > available. where: a phrase for the message, such as "on the device".
-  static void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where);
+  /// remedy: what to do, except for raising the limit and using another device.
+  static void CheckBytes(std::uint64_t needed, std::uint64_t available, const char* where,
+    const char* remedy = VolumeRemedy);
 
 private:
   /// Measures the memory of the system again, since memory may have been allocated.

@@ -302,7 +302,9 @@ TEST_F(DeformMisuse, Settings)
   this->Expect("an unknown device", "a device that nobody has");
 
   this->GetFilter()->SetMemoryLimit(1000);
-  this->Expect("not enough memory", "1000");
+  this->Expect("not enough memory",
+    "and 1000 are available. Use a smaller volume, fewer arrays or smaller output bounds, raise "
+    "the memory limit");
 
   this->GetFilter()->SetOutputSpacingModeToCustomSpacing();
   this->GetFilter()->SetCustomSpacing(1.0, 0.0, 1.0);
