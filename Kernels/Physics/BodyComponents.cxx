@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/QR>
 
 #include <glm/geometric.hpp>
 
@@ -84,34 +86,48 @@ class PlaneSupport
 public:
   void Add(const glm::dvec3& point, const glm::dvec3& normal)
   {
-    this->Origin = this->IsEmpty ? point : this->Origin;
-    this->IsEmpty = false;
-    const glm::dvec3 turn = glm::cross(point - this->Origin, normal);
-    Eigen::Matrix<double, 6, 1> row;
-    row << normal.x, normal.y, normal.z, turn.x, turn.y, turn.z;
-    this->Products += row * row.transpose();
+    this->Points.push_back(point);
+    this->Normals.push_back(normal);
   }
 
-  // Whether all motions are prevented. Each row and column is scaled by its diagonal element, as
-  // translations and rotations have different units.
+  // Whether all motions are prevented, by more than the rounding of normals and coordinates.
+  // Translations and rotations have different units, so a rotation is measured by the farthest
+  // point from its axis. A slender body is also held by the levers across its length, but not by
+  // those of points that lie on a line up to rounding.
   bool Holds() const
   {
-    constexpr double least = 1e-8;
-    if (!(this->Products.diagonal().minCoeff() > 0.0))
+    constexpr double leastReach = 0.1;
+    if (this->Points.size() < 6)
     {
       return false;
     }
-    const Eigen::Matrix<double, 6, 1> sizes = this->Products.diagonal().cwiseSqrt().cwiseInverse();
-    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>>(
-             sizes.asDiagonal() * this->Products * sizes.asDiagonal())
-             .eigenvalues()
-             .minCoeff() > least;
+    const auto columns = static_cast<Eigen::Index>(this->Points.size());
+    Eigen::Matrix3Xd points = Eigen::Map<const Eigen::Matrix3Xd>(&this->Points[0].x, 3, columns);
+    points.colwise() -= points.rowwise().mean().eval();
+    const Eigen::Matrix3d axes =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(points * points.transpose()).eigenvectors();
+    points = axes.transpose() * points;
+    Eigen::Matrix<double, 6, Eigen::Dynamic> motions(6, columns);
+    motions.topRows<3>() =
+      axes.transpose() * Eigen::Map<const Eigen::Matrix3Xd>(&this->Normals[0].x, 3, columns);
+    const double reach = points.colwise().norm().maxCoeff();
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const auto y = points.row((axis + 1) % 3).array();
+      const auto z = points.row((axis + 2) % 3).array();
+      const double scale =
+        std::max((y.square() + z.square()).sqrt().maxCoeff(), leastReach * reach);
+      motions.row(3 + axis) =
+        (y * motions.row((axis + 2) % 3).array() - z * motions.row((axis + 1) % 3).array()) / scale;
+    }
+    Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 6, Eigen::Dynamic>> factors(motions);
+    factors.setThreshold(ElasticBody::ParallelSine);
+    return factors.rank() == 6;
   }
 
 private:
-  bool IsEmpty = true;
-  glm::dvec3 Origin{ 0.0 };
-  Eigen::Matrix<double, 6, 6> Products = Eigen::Matrix<double, 6, 6>::Zero();
+  std::vector<glm::dvec3> Points;
+  std::vector<glm::dvec3> Normals;
 };
 
 // The supporting nodes of a piece: the first two, and whether they hold the piece.

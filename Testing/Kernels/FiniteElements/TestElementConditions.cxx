@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <utility>
 
 using namespace deformvolume;
@@ -192,6 +193,55 @@ TEST(ElementConditions, ThreePlanesHoldABody)
   }
   EXPECT_LT(friction, 1e-9);
   EXPECT_LT(LargestOf(sum - glm::dvec3(0, 0, -1e-3)), 1e-9);
+}
+
+// Normals that were computed from rounded coordinates prevent no further motions. Few nodes beside
+// many prevent them, and so does the short side of a slender body.
+TEST(ElementConditions, RoundedNormalsAndSlenderBodies)
+{
+  const auto holds = [](const ElasticBody& body)
+  {
+    FiniteElementModel model;
+    model.SetBody(body);
+    return GetError([&] { model.Solve({}); }).find("No constraints") == std::string::npos;
+  };
+  std::mt19937 random(1);
+  for (const double noise : { 1e-16, 1e-8, 1e-7, 1e-5, 1e-4 })
+  {
+    SCOPED_TRACE(noise);
+    std::uniform_real_distribution<double> any(-3.0 * noise, 3.0 * noise);
+    for (const int planes : { 2, 3 })
+    {
+      QuadraticLattice cube = MakeCube();
+      for (int axis = 0; axis < planes; ++axis)
+      {
+        SlideFace(cube.Body, axis);
+      }
+      for (auto* normals : { &cube.Body.SlidingNormals, &cube.Body.SecondSlidingNormals })
+      {
+        for (glm::dvec3& normal : *normals)
+        {
+          normal +=
+            normal == glm::dvec3(0.0) ? normal : glm::dvec3(any(random), any(random), any(random));
+        }
+      }
+      EXPECT_EQ(holds(cube.Body), planes == 3);
+    }
+  }
+  // A quarter of a rod that is a hundred times as long as thick. Its third plane, or a single node,
+  // holds it along its length.
+  QuadraticLattice rod({ 2, 2, 201 }, 0.01, MakeMaterial(1e4, 0.3));
+  rod.Body.Fixed.assign(rod.Body.Points.size(), 0);
+  SlideFace(rod.Body, 0);
+  SlideFace(rod.Body, 1);
+  EXPECT_FALSE(holds(rod.Body));
+  ElasticBody pinned = rod.Body;
+  const auto end = static_cast<std::size_t>(rod.GetNode({ 0, 0, 100 }));
+  pinned.SlidingNormals[end] = pinned.SecondSlidingNormals[end] = glm::dvec3(0.0);
+  pinned.Fixed[end] = 1;
+  EXPECT_TRUE(holds(pinned));
+  SlideFace(rod.Body, 2);
+  EXPECT_TRUE(holds(rod.Body));
 }
 
 // The length of normals does not matter.
