@@ -37,7 +37,8 @@
  * that is held. It is also held by such nodes together with sliding nodes if these exclude all
  * motions of a rigid body. Other pieces are frozen: they bear no load and exert no force. A frozen
  * piece with one or two nodes that are shared, fixed or held by handles follows these nodes like a
- * rigid body, with the smallest rotation. Other frozen pieces do not move. A warning has the number
+ * rigid body, with the smallest rotation. Other frozen pieces do not move, except that a deformed
+ * one gets its shape at rest again, at the place that fits its nodes best. A warning has the number
  * of frozen pieces (GetNumberOfFrozenPieces()). It is an error if no piece is held.
  *
  * @par Warnings:

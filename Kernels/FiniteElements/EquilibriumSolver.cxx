@@ -406,9 +406,14 @@ void EquilibriumSolver::UseHeldPieces(const EquilibriumProblem& problem)
   this->Forget();
 }
 
-void EquilibriumSolver::MoveFollowers(const EquilibriumProblem& problem, State& state) const
+void EquilibriumSolver::MoveFrozenPieces(
+  const EquilibriumProblem& problem, const EquilibriumReport& report, State& state) const
 {
-  if (problem.Supports.Following.empty())
+  if (report.NumberOfFrozenPieces > report.NumberOfFollowingPieces)
+  {
+    MakeFreePiecesRigid(this->Body, this->Pieces, problem.Supports, state.Displacements);
+  }
+  if (report.NumberOfFollowingPieces == 0)
   {
     return;
   }
@@ -514,7 +519,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
     this->HasTangent = false;
   }
   this->IsTangentOld = true;
-  this->MoveFollowers(problem, state);
+  this->MoveFrozenPieces(problem, report, state);
   report.StrainEnergy = state.Sums.Energy;
   report.NumberOfInvertedTetrahedra =
     CountInvertedSplits(abortCheck, this->Body, state.Displacements);

@@ -362,4 +362,57 @@ void MoveFollowing(const ElasticBody& body, const BodyComponents& pieces,
   }
 }
 
+void MakeFreePiecesRigid(const ElasticBody& body, const BodyComponents& pieces,
+  const ComponentSupports& supports, std::vector<glm::dvec3>& displacements)
+{
+  std::vector<bool> isFree(supports.IsHeld);
+  isFree.flip();
+  for (const FollowingPiece& follower : supports.Following)
+  {
+    isFree[static_cast<std::size_t>(follower.Piece)] = false;
+  }
+  DisjointSets<std::int32_t> sets(isFree.size());
+  for (const auto& [node, piece] : pieces.SharedNodes)
+  {
+    sets.Unite(piece, pieces.PieceOfNode[static_cast<std::size_t>(node)]);
+  }
+  std::vector<std::vector<std::size_t>> nodesOfSets(isFree.size());
+  for (std::size_t node = 0; node < body.Points.size(); ++node)
+  {
+    const std::int32_t piece = pieces.PieceOfNode[node];
+    if (piece >= 0 && isFree[static_cast<std::size_t>(piece)])
+    {
+      nodesOfSets[static_cast<std::size_t>(sets.Find(piece))].push_back(node);
+    }
+  }
+  // A motion that is rigid up to rounding does not change.
+  constexpr double rounding = 1e-9;
+  for (const std::vector<std::size_t>& nodes : nodesOfSets)
+  {
+    const auto number = static_cast<Eigen::Index>(nodes.size());
+    Eigen::Matrix3Xd rest(3, number);
+    Eigen::Matrix3Xd moved(3, number);
+    for (Eigen::Index i = 0; i < number; ++i)
+    {
+      const std::size_t node = nodes[static_cast<std::size_t>(i)];
+      rest.col(i) = Eigen::Map<const Eigen::Vector3d>(&body.Points[node].x);
+      moved.col(i) = rest.col(i) + Eigen::Map<const Eigen::Vector3d>(&displacements[node].x);
+    }
+    if (number == 0)
+    {
+      continue;
+    }
+    const Eigen::Matrix4d motion = Eigen::umeyama(rest, moved, false);
+    const Eigen::Matrix3Xd rigid =
+      (motion.topLeftCorner<3, 3>() * rest).colwise() + motion.topRightCorner<3, 1>();
+    const bool isRigid = (rigid - moved).cwiseAbs().maxCoeff() <=
+      rounding * std::max(rest.cwiseAbs().maxCoeff(), moved.cwiseAbs().maxCoeff());
+    for (Eigen::Index i = 0; i < number && !isRigid; ++i)
+    {
+      Eigen::Map<Eigen::Vector3d>(&displacements[nodes[static_cast<std::size_t>(i)]].x) =
+        rigid.col(i) - rest.col(i);
+    }
+  }
+}
+
 } // namespace deformvolume

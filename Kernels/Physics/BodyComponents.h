@@ -79,6 +79,11 @@ DEFORMVOLUME_EXPORT void MoveFollowing(const ElasticBody& body, const BodyCompon
   const std::vector<FollowingPiece>& following, std::vector<unsigned char>& isSettled,
   std::vector<glm::dvec3>& displacements);
 
+/// Gives the pieces that are neither held nor following their shape at rest again, each at the
+/// place that fits its displacements best. Pieces that share nodes move together.
+DEFORMVOLUME_EXPORT void MakeFreePiecesRigid(const ElasticBody& body, const BodyComponents& pieces,
+  const ComponentSupports& supports, std::vector<glm::dvec3>& displacements);
+
 } // namespace deformvolume
 
 #endif

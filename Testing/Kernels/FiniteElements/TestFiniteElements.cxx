@@ -161,7 +161,7 @@ TEST(FiniteElements, FrozenPiece)
   for (const std::int32_t node : second)
   {
     const glm::dvec3& point = lattice.Body.Points[static_cast<std::size_t>(node)];
-    displacements[static_cast<std::size_t>(node)] = glm::dvec3(0.03 + point.y, 0.0, 0.0);
+    displacements[static_cast<std::size_t>(node)] = glm::dvec3(0.03, point.z, 0.0);
   }
   model.SetDisplacements(displacements);
   EquilibriumRequest request = MakeConverged();
@@ -170,10 +170,23 @@ TEST(FiniteElements, FrozenPiece)
   EXPECT_TRUE(report.IsConverged);
   EXPECT_EQ(report.NumberOfFrozenPieces, 1);
   EXPECT_LT(model.GetDisplacements()[26].y, 0.0);
+  // The second piece has its shape at rest, turned and moved as its nodes were on average.
+  const glm::dmat3 turn = MakeRotation(-std::atan(0.5), { 1.0, 0.0, 0.0 });
+  const glm::dvec3 center(1.01, 0.01, 0.01);
+  const std::vector<glm::dvec3> rigid = model.GetDisplacements();
   for (const std::int32_t number : second)
   {
     const auto node = static_cast<std::size_t>(number);
-    EXPECT_EQ(model.GetDisplacements()[node], displacements[node]);
+    const glm::dvec3 point = lattice.Body.Points[node];
+    const glm::dvec3 moved = turn * (point - center) + center + glm::dvec3(0.03, 0.01, 0.0);
+    EXPECT_LT(LargestOf(point + rigid[node] - moved), 1e-12);
+  }
+  model.SetDisplacements(rigid);
+  model.Solve(request);
+  for (const std::int32_t node : second)
+  {
+    EXPECT_EQ(model.GetDisplacements()[static_cast<std::size_t>(node)],
+      rigid[static_cast<std::size_t>(node)]);
   }
   // With three held nodes, the second piece is held as well.
   for (const std::int32_t node : { 27, 28, 30 })
