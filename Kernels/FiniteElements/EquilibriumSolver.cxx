@@ -97,6 +97,32 @@ double EquilibriumSolver::FindRounding(const std::vector<glm::dvec3>& displaceme
   return rounding * this->LeastModulus * this->MeanEdge * (this->MeanEdge + farthest);
 }
 
+bool EquilibriumSolver::IsWithinRounding(
+  const EquilibriumProblem& problem, const State& state, double wanted) const
+{
+  std::vector<double> moduli(problem.IsFree.size(), 0.0);
+  for (std::size_t t = 0; t < this->Body.Tetrahedra.size(); ++t)
+  {
+    this->Body.ForNodes(t,
+      [&](std::int32_t node)
+      {
+        double& modulus = moduli[static_cast<std::size_t>(node)];
+        modulus = std::max(modulus, this->Body.GetMaterial(t).YoungModulus);
+      });
+  }
+  const double rounding = this->FindRounding(state.Displacements) / this->LeastModulus;
+  for (std::size_t node = 0; node < moduli.size(); ++node)
+  {
+    const glm::dvec3 left = this->Sliding.Project(node, problem.Loads[node] - state.Forces[node]);
+    if (problem.IsFree[node] != 0 &&
+      LargestComponent(left) > std::max(wanted, rounding * moduli[node]))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 void EquilibriumSolver::SetMaterials(const std::vector<ElasticMaterial>& materials)
 {
   this->Body.Materials = materials;
@@ -506,14 +532,20 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
     before = residuals.Largest;
     hasStalled =
       !report.IsConverged && stalledSteps.AreTooMany(residuals.Largest, state.Sums.Inverted > 0);
-    if (report.IsConverged || hasStalled || report.NewtonSteps >= limits.NewtonSteps ||
-      !this->Step(
-        abortCheck, problem, ChooseTolerance(problem, wanted / residuals.Largest), state, report))
+    if (report.IsConverged || hasStalled || report.NewtonSteps >= limits.NewtonSteps)
+    {
+      break;
+    }
+    if (!this->Step(
+          abortCheck, problem, ChooseTolerance(problem, wanted / residuals.Largest), state, report))
     {
       break;
     }
   }
   if (report.NewtonSteps > 1 && this->IsTangentOld)
+      // Beside soft tissue, the rounding errors of bone can be greater than the forces of the
+      // tissue allow.
+      report.IsConverged = this->IsWithinRounding(problem, state, wanted);
   {
     // A tangent of an earlier call took several steps: a new one is cheaper in the next call.
     this->HasTangent = false;

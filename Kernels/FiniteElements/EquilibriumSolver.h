@@ -42,10 +42,13 @@ private:
     double Potential = 0.0;
   };
   void UpdateScale(AbortCheck& abortCheck);
-  // Returns an upper limit of the rounding errors of forces, in N.
+  // Returns an upper limit of the rounding errors of forces in the softest material, in N.
   double FindRounding(const std::vector<glm::dvec3>& displacements) const;
   // Discards forces, tangent, preconditioner and solutions of earlier calls. Keeps the
   // displacements.
+  // Whether each unbalanced force is at most `wanted`, or of the size of the rounding errors of the
+  // stiffest tetrahedron of its node.
+  bool IsWithinRounding(const EquilibriumProblem& problem, const State& state, double wanted) const;
   void Forget();
   void UseHeldPieces(const EquilibriumProblem& problem);
   // Moves pieces that are not held with their supporting nodes. Those without such nodes get their
