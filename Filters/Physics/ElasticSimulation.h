@@ -47,6 +47,7 @@ public:
     std::vector<glm::dvec3> Displacements;
     std::vector<glm::dvec3> Velocities;
   };
+  /// Returns the state from which the next frame starts.
   virtual State GetState() = 0;
   /// Restores a body and its state from before nodes were split.
   virtual void Return(const ElasticBody& body, const State& state) = 0;

@@ -13,7 +13,7 @@ void FiniteElementSimulation::SetBody(
 {
   if (keepsState)
   {
-    const std::vector<glm::dvec3> displacements = this->Model.GetDisplacements();
+    const std::vector<glm::dvec3> displacements = this->Model.GetStart();
     this->Model.SetBody(body, progress);
     this->Model.SetDisplacements(displacements);
     return;
@@ -26,7 +26,7 @@ void FiniteElementSimulation::SetBody(
 void FiniteElementSimulation::SplitNodes(
   const ElasticBody& body, const std::vector<std::int32_t>& origins)
 {
-  std::vector<glm::dvec3> displacements = this->Model.GetDisplacements();
+  std::vector<glm::dvec3> displacements = this->Model.GetStart();
   for (const std::int32_t origin : origins)
   {
     displacements.push_back(displacements[static_cast<std::size_t>(origin)]);

@@ -23,7 +23,7 @@ public:
   void SetBody(
     const ElasticBody& body, bool keepsState, const std::function<bool()>& progress) override;
   void SplitNodes(const ElasticBody& body, const std::vector<std::int32_t>& origins) override;
-  State GetState() override { return { this->Model.GetDisplacements(), {} }; }
+  State GetState() override { return { this->Model.GetStart(), {} }; }
   void Return(const ElasticBody& body, const State& state) override;
   void Advance(const Frame& frame) override;
   bool HasFrames() const override { return false; }

@@ -148,6 +148,14 @@ void EquilibriumSolver::SetDisplacements(const std::vector<glm::dvec3>& displace
   this->Forget();
 }
 
+std::vector<glm::dvec3> EquilibriumSolver::GetStart() const
+{
+  // From the tangled body, smaller loads would not reach an equilibrium either.
+  return this->HasStalled
+    ? std::vector<glm::dvec3>(this->Last.Displacements.size(), glm::dvec3(0.0))
+    : this->Last.Displacements;
+}
+
 void EquilibriumSolver::Forget()
 {
   this->HasForces = false;
@@ -470,11 +478,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   }
   this->RightHandSide.resize(problem.IsFree.size());
   State state = this->Last;
-  if (this->HasStalled)
-  {
-    // Start at rest: from the tangled body, smaller loads would not reach an equilibrium either.
-    state.Displacements.assign(state.Displacements.size(), glm::dvec3(0.0));
-  }
+  state.Displacements = this->GetStart();
   if (this->HasForces)
   {
     this->FindPotential(abortCheck, problem, state);
@@ -539,13 +543,13 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
     if (!this->Step(
           abortCheck, problem, ChooseTolerance(problem, wanted / residuals.Largest), state, report))
     {
+      // Beside soft tissue, the rounding errors of bone can be greater than the forces of the
+      // tissue allow.
+      report.IsConverged = this->IsWithinRounding(problem, state, wanted);
       break;
     }
   }
   if (report.NewtonSteps > 1 && this->IsTangentOld)
-      // Beside soft tissue, the rounding errors of bone can be greater than the forces of the
-      // tissue allow.
-      report.IsConverged = this->IsWithinRounding(problem, state, wanted);
   {
     // A tangent of an earlier call took several steps: a new one is cheaper in the next call.
     this->HasTangent = false;

@@ -28,6 +28,8 @@ public:
 
   const ElasticBody& GetBody() const { return this->Body; }
   const std::vector<glm::dvec3>& GetDisplacements() const { return this->Last.Displacements; }
+  /// See FiniteElementModel::GetStart().
+  std::vector<glm::dvec3> GetStart() const;
   void SetDisplacements(const std::vector<glm::dvec3>& displacements);
   std::vector<glm::dvec3> GetForces() const;
   std::vector<ElementResults> GetElementResults() const;
@@ -44,11 +46,11 @@ private:
   void UpdateScale(AbortCheck& abortCheck);
   // Returns an upper limit of the rounding errors of forces in the softest material, in N.
   double FindRounding(const std::vector<glm::dvec3>& displacements) const;
-  // Discards forces, tangent, preconditioner and solutions of earlier calls. Keeps the
-  // displacements.
   // Whether each unbalanced force is at most `wanted`, or of the size of the rounding errors of the
   // stiffest tetrahedron of its node.
   bool IsWithinRounding(const EquilibriumProblem& problem, const State& state, double wanted) const;
+  // Discards forces, tangent, preconditioner and solutions of earlier calls. Keeps the
+  // displacements.
   void Forget();
   void UseHeldPieces(const EquilibriumProblem& problem);
   // Moves pieces that are not held with their supporting nodes. Those without such nodes get their

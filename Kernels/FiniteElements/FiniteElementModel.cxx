@@ -80,6 +80,11 @@ const std::vector<glm::dvec3>& FiniteElementModel::GetDisplacements() const
   return this->Impl->GetSolver().GetDisplacements();
 }
 
+std::vector<glm::dvec3> FiniteElementModel::GetStart() const
+{
+  return this->Impl->GetSolver().GetStart();
+}
+
 void FiniteElementModel::SetDisplacements(const std::vector<glm::dvec3>& displacements)
 {
   EquilibriumSolver& solver = this->Impl->GetSolver();

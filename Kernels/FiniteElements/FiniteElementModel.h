@@ -21,7 +21,7 @@ namespace deformvolume
 /// incompressible material, the part of lambda above 4 mu acts on the mean dilatation of each
 /// tetrahedron only (selective mean dilatation).
 ///
-/// Call SetBody first, then Solve any number of times. Solve starts from the last displacements.
+/// Call SetBody first, then Solve any number of times. Solve starts from GetStart().
 /// Every failure throws an Error; the body, its materials and its displacements are then unchanged.
 /// Results are bit for bit the same for any number of threads.
 class DEFORMVOLUME_EXPORT FiniteElementModel
@@ -55,6 +55,10 @@ public:
 
   /// Returns the displacement of each node, in meters.
   const std::vector<glm::dvec3>& GetDisplacements() const;
+
+  /// Returns the displacements from which the next call of Solve starts: those of the last one, or
+  /// 0 if it gave up (EquilibriumMode::Converged).
+  std::vector<glm::dvec3> GetStart() const;
 
   /// Sets the displacements from which the next call of Solve starts, such as a saved state.
   /// Displacements of sliding nodes are projected to their plane or line.

@@ -311,6 +311,63 @@ TEST(ElasticDeformation, WarningsOfSubclasses)
   EXPECT_FALSE(HasPart(UpdateAndWarn(live), "not in equilibrium"));
 }
 
+// After loads that are far too large, a body with another material starts at rest, and a new sheet
+// cuts the body at rest.
+TEST(ElasticDeformation, CorrectionsAfterGivingUp)
+{
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetNumberOfNodes(2, 2, 11);
+  lattice->SetBounds(0.0, 0.01, 0.0, 0.01, 0.0, 0.1);
+  lattice->Update();
+  vtkUnstructuredGrid* rod = lattice->GetOutput();
+  FixPoints(rod, [](const glm::dvec3& p) { return p.z == 0.0; });
+  const auto solve =
+    [](Simulated<vtkFiniteElementDeformation>& elements, double youngModulus, double gravity)
+  {
+    elements.Filter->SetYoungModulus(youngModulus);
+    elements.Filter->SetPoissonRatio(0.49);
+    elements.Filter->SetGravity(gravity, 0.0, 0.0);
+    elements.Filter->Update();
+    elements.Observer->Clear();
+  };
+  vtkNew<vtkPolyData> sheet;
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(-1.0, -1.0, 0.051);
+  points->InsertNextPoint(1.0, -1.0, 0.051);
+  points->InsertNextPoint(0.0, 2.0, 0.051);
+  vtkNew<vtkCellArray> triangles;
+  triangles->InsertNextCell({ 0, 1, 2 });
+  sheet->SetPoints(points);
+  sheet->SetPolys(triangles);
+  Simulated<vtkFiniteElementDeformation> expected(rod);
+  solve(expected, 1e4, 9.81);
+  const auto wanted = expected.Copy();
+  for (const bool isCut : { false, true })
+  {
+    SCOPED_TRACE(isCut);
+    Simulated<vtkFiniteElementDeformation> elements(rod);
+    solve(elements, isCut ? 1e4 : 1.0, isCut ? 9810.0 : 9.81);
+    EXPECT_FALSE(elements.Filter->GetIsConverged());
+    EXPECT_GT(elements.Filter->GetNumberOfInvertedTetrahedra(), 0);
+    elements.Filter->SetSheetData(isCut ? sheet.Get() : nullptr);
+    solve(elements, 1e4, 9.81);
+    EXPECT_TRUE(elements.Filter->GetIsConverged());
+    EXPECT_EQ(elements.Filter->GetNumberOfInvertedTetrahedra(), 0);
+    if (isCut)
+    {
+      EXPECT_EQ(elements.Filter->GetNumberOfSplitFaces(), 2);
+      elements.Filter->UndoCut();
+      solve(elements, 1e4, 9.81);
+    }
+    const auto found = elements.Copy();
+    ASSERT_EQ(found->GetNumberOfValues(), wanted->GetNumberOfValues());
+    for (vtkIdType i = 0; i < wanted->GetNumberOfValues(); ++i)
+    {
+      EXPECT_EQ(found->GetValue(i), wanted->GetValue(i));
+    }
+  }
+}
+
 // The elongation of a bar that hangs by its own weight is rho g L^2 / (2 E).
 template <typename Filter, typename Settle>
 void CheckHangingBar(const Settle& settle)
