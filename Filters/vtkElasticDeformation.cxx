@@ -248,12 +248,13 @@ void vtkElasticDeformation::Execute(
   }
   this->CheckSize(session.GetMesh().Size);
   const bool wasToReset = internals.IsToReset;
+  bool isToReset = this->StartsAgain(info);
   std::size_t cuts = session.GetNumberOfCuts();
-  const double time = wasToReset ? 0.0 : session.Time;
+  const double time = isToReset ? 0.0 : session.Time;
   try
   {
-    cuts = this->UpdateCuts(vtkPolyData::GetData(input[2]));
-    this->Advance(simulation, vtkPointSet::GetData(input[1]), info, progress);
+    cuts = this->UpdateCuts(vtkPolyData::GetData(input[2]), isToReset);
+    this->Advance(simulation, vtkPointSet::GetData(input[1]), info, progress, isToReset);
   }
   catch (const deformvolume::Aborted&)
   {
@@ -262,7 +263,7 @@ void vtkElasticDeformation::Execute(
   catch (const deformvolume::Error&)
   {
     // The sheet cuts in the next update that succeeds.
-    if (session.Time == time || (wasToReset && internals.IsToReset))
+    if (session.Time == time || isToReset)
     {
       this->RevertCuts(simulation, cuts);
       internals.IsToReset = wasToReset;
@@ -293,8 +294,16 @@ void vtkElasticDeformation::Execute(
   }
 }
 
+bool vtkElasticDeformation::StartsAgain(vtkInformation* info)
+{
+  const vtkInternals& internals = *this->Internals;
+  return internals.IsToReset ||
+    (info->Has(Pipeline::UPDATE_TIME_STEP()) &&
+      info->Get(Pipeline::UPDATE_TIME_STEP()) < internals.Session.Time - this->GetRoundOff());
+}
+
 void vtkElasticDeformation::Advance(ElasticSimulation& simulation, vtkPointSet* handles,
-  vtkInformation* info, deformvolume::ProgressReport& progress)
+  vtkInformation* info, deformvolume::ProgressReport& progress, bool& isToReset)
 {
   vtkInternals& internals = *this->Internals;
   deformvolume::ElasticSession& session = internals.Session;
@@ -305,15 +314,13 @@ void vtkElasticDeformation::Advance(ElasticSimulation& simulation, vtkPointSet* 
   frame.Loads.Forces = session.GetMesh().Forces;
   frame.Loads.FixedDisplacements = session.GetMesh().PrescribedDisplacements;
 
-  double end = session.Time;
-  if (internals.IsToReset)
+  if (isToReset)
   {
     session.Reset();
-    internals.IsToReset = false;
-    end = 0.0;
+    internals.IsToReset = isToReset = false;
   }
-  // Rounding errors must not change the number of frames if a time is a multiple of FrameTime.
-  const double roundOff = 1e-6 * this->FrameTime;
+  double end = session.Time;
+  const double roundOff = this->GetRoundOff();
   if (info->Has(Pipeline::UPDATE_TIME_STEP()))
   {
     if (simulation.HasFrames() && !HasTimes(info))
@@ -322,10 +329,6 @@ void vtkElasticDeformation::Advance(ElasticSimulation& simulation, vtkPointSet* 
                       "update it for other times. Set EndTime to the end of the simulation.");
     }
     end = info->Get(Pipeline::UPDATE_TIME_STEP());
-    if (end < session.Time - roundOff)
-    {
-      session.Reset();
-    }
   }
   else
   {
@@ -377,7 +380,7 @@ void vtkElasticDeformation::RevertCuts(ElasticSimulation& simulation, std::size_
   }
 }
 
-std::size_t vtkElasticDeformation::UpdateCuts(vtkPolyData* sheet)
+std::size_t vtkElasticDeformation::UpdateCuts(vtkPolyData* sheet, bool isToReset)
 {
   deformvolume::ElasticSession& session = this->Internals->Session;
   const deformvolume::WorldSheet read = deformvolume::ReadSheet(
@@ -386,7 +389,7 @@ std::size_t vtkElasticDeformation::UpdateCuts(vtkPolyData* sheet)
   session.RemoveCuts(session.GetNumberOfCuts() - undone);
   this->Internals->CutsToUndo = 0;
   const std::size_t before = session.GetNumberOfCuts();
-  session.Cut(read);
+  session.Cut(read, isToReset);
   return before;
 }
 

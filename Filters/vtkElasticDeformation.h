@@ -308,7 +308,8 @@ public:
 
   /**
    * Reset the body to rest, and its time to 0, before the next execution. VTK keeps the last
-   * requested time: after UpdateTimeStep(t), Update() advances to t again.
+   * requested time: after UpdateTimeStep(t), Update() advances to t again. A new sheet cuts the
+   * body at rest.
    */
   void Reset();
 
@@ -358,11 +359,20 @@ private:
 
   void Execute(vtkInformationVector** input, vtkInformationVector* output);
   /// Undoes cuts, and cuts with the sheet. Returns the number of cuts before that of the sheet.
-  std::size_t UpdateCuts(vtkPolyData* sheet);
+  std::size_t UpdateCuts(vtkPolyData* sheet, bool isToReset);
   void RevertCuts(deformvolume::ElasticSimulation& simulation, std::size_t left);
-  /// Advances to the requested time, if any.
+  /// The part of FrameTime that is neglected: rounding errors must not change the number of frames
+  /// if a time is a multiple of FrameTime.
+  double GetRoundOff() const
+  {
+    return 1e-6 * this->FrameTime;
+  }
+  /// Whether the simulation starts again from rest: after Reset(), or if an earlier time than the
+  /// current one is requested.
+  bool StartsAgain(vtkInformation* info);
+  /// Advances to the requested time, if any. isToReset: becomes false as soon as the body is reset.
   void Advance(deformvolume::ElasticSimulation& simulation, vtkPointSet* handles,
-    vtkInformation* info, deformvolume::ProgressReport& progress);
+    vtkInformation* info, deformvolume::ProgressReport& progress, bool& isToReset);
   /// Warns if a body of this size, in m, is probably not intended.
   void CheckSize(double size);
 

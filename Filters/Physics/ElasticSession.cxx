@@ -187,7 +187,7 @@ BodyMesh ElasticSession::WithCuts(const BodyMesh& whole) const
   return mesh;
 }
 
-void ElasticSession::Cut(const WorldSheet& sheet)
+void ElasticSession::Cut(const WorldSheet& sheet, bool isAtRest)
 {
   if (sheet == this->Sheet)
   {
@@ -197,9 +197,10 @@ void ElasticSession::Cut(const WorldSheet& sheet)
   {
     std::vector<glm::dvec3> positions = this->Mesh.Body.Points;
     ElasticSimulation::State before = this->Simulation->GetState();
-    std::transform(positions.begin(), positions.end(), before.Displacements.begin(),
-      positions.begin(),
-      [](const glm::dvec3& point, const glm::dvec3& displacement) { return point + displacement; });
+    for (std::size_t node = 0; node < positions.size() && !isAtRest; ++node)
+    {
+      positions[node] += before.Displacements[node];
+    }
     std::vector<glm::dvec3> points = sheet.Points;
     for (glm::dvec3& point : points)
     {

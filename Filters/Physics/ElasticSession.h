@@ -30,9 +30,10 @@ public:
     const Stamp::value_type& written, const BodySettings& settings,
     const std::function<bool()>& progress);
 
-  /// Cuts the deformed body along a sheet, which is in units of the mesh. Does nothing if the sheet
-  /// is the same as in the last call.
-  void Cut(const WorldSheet& sheet);
+  /// Cuts the deformed body along a sheet, which is in units of the mesh. isAtRest: cuts the body
+  /// at rest instead, as Reset() follows. Does nothing if the sheet is the same as in the last
+  /// call.
+  void Cut(const WorldSheet& sheet, bool isAtRest);
   /// Removes all cuts except the first ones. left: number of cuts to keep. The state of the body
   /// becomes that before the removed cuts. The time does not change.
   void RemoveCuts(std::size_t left);

@@ -5,6 +5,11 @@
 #include <vtkCellArray.h>
 #include <vtkTetra.h>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
 #include <functional>
 
 using namespace elasticTesting;
@@ -221,6 +226,54 @@ TEST(ElasticCuts, FailedCutAfterOthers)
   EXPECT_EQ(simulated.Copy()->GetRange(-1)[1], 0.0);
 }
 
+// A new sheet together with Reset(), or with an earlier time, cuts the body at rest. If that update
+// fails, the body keeps its state, and the next update does both.
+template <typename Filter>
+void CheckCutsAtRest()
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
+  const auto handles = MakeHandles({ { glm::dvec3(5.0, 5.0, 30.0), glm::dvec3(13.0, 5.0, 40.0) } });
+  const auto sheet = MakeSheet(5.0, 15.0);
+  const auto prepare = [&](Simulated<Filter>& simulated)
+  {
+    simulated.Filter->SetLengthUnitToMillimetre();
+    simulated.Filter->SetHandleRadius(6.0);
+    simulated.Filter->SetHandlesData(handles);
+    simulated.Filter->SetEndTime(9.0);
+  };
+  Simulated<Filter> expected(bar);
+  prepare(expected);
+  expected.Filter->SetSheetData(sheet);
+  const auto wanted = expected.At(0.1);
+  EXPECT_EQ(expected.Filter->GetNumberOfSplitFaces(), 48);
+  for (const bool resets : { false, true })
+  {
+    SCOPED_TRACE(resets);
+    Simulated<Filter> simulated(bar);
+    prepare(simulated);
+    const auto moved = simulated.At(0.3);
+    if (resets)
+    {
+      simulated.Filter->Reset();
+    }
+    simulated.Filter->SetSheetData(sheet);
+    simulated.Filter->SetHandlesData(MakeHandles({ { glm::dvec3(1e3), glm::dvec3(1e3) } }));
+    simulated.Filter->UpdateTimeStep(0.1);
+    EXPECT_TRUE(HasPart(simulated.Observer->GetErrorMessage(), "holds no node that could move"));
+    simulated.Observer->Clear();
+    EXPECT_EQ(simulated.Filter->GetTime(), resets ? 0.0 : 0.3);
+    EXPECT_EQ(simulated.Filter->GetNumberOfCuts(), 0);
+    simulated.Filter->SetHandlesData(handles);
+    const auto found = simulated.At(0.1);
+    EXPECT_EQ(simulated.Filter->GetNumberOfSplitFaces(), 48);
+    ASSERT_EQ(found->GetNumberOfValues(), wanted->GetNumberOfValues());
+    for (vtkIdType i = 0; i < wanted->GetNumberOfValues(); ++i)
+    {
+      EXPECT_EQ(found->GetValue(i), wanted->GetValue(i));
+    }
+  }
+}
+
 // Cuts that cross earlier cuts split nodes again. A new cut replaces an undone one.
 template <typename Filter>
 void CheckCutsOfCuts()
@@ -328,6 +381,63 @@ TEST(ElasticCuts, CutsOfCuts)
 {
   CheckCutsOfCuts<vtkMassSpringDeformation>();
   CheckCutsOfCuts<vtkFiniteElementDeformation>();
+}
+
+TEST(ElasticCuts, CutsAtRest)
+{
+  CheckCutsAtRest<vtkMassSpringDeformation>();
+  CheckCutsAtRest<vtkFiniteElementDeformation>();
+}
+
+// The piece that a cut frees has its shape at rest again, as its results say.
+TEST(ElasticCuts, FreePieceIsNotStrained)
+{
+  vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1e-3);
+  Simulated<vtkFiniteElementDeformation> elements(bar);
+  elements.Filter->SetLengthUnitToMillimetre();
+  elements.Filter->SetHandleRadius(6.0);
+  elements.Filter->SetHandlesData(
+    MakeHandles({ { glm::dvec3(5.0, 5.0, 30.0), glm::dvec3(5.0, 12.0, 40.0) } }));
+  EXPECT_EQ(elements.TryUpdate(), "");
+  elements.Filter->SetHandlesData(nullptr);
+  const auto sheet = MakeSheet(0.0, -100.0);
+  for (vtkIdType id = 0; id < sheet->GetNumberOfPoints(); ++id)
+  {
+    const glm::dvec3 point = GetPoint(sheet, id);
+    sheet->GetPoints()->SetPoint(id, point.z, point.y, 20.0);
+  }
+  elements.Filter->SetSheetData(sheet);
+  elements.Filter->Update();
+  EXPECT_TRUE(HasPart(elements.Observer->GetWarningMessage(), "1 pieces of the mesh are not held"));
+  elements.Observer->Clear();
+  EXPECT_EQ(elements.Filter->GetNumberOfFrozenPieces(), 1);
+  vtkUnstructuredGrid* output = elements.Filter->GetOutput();
+  const auto displacements = elements.Copy();
+  glm::dvec3 low(1e9);
+  glm::dvec3 high(-1e9);
+  const auto look = [&](vtkIdType node)
+  {
+    glm::dvec3 moved(0.0);
+    displacements->GetTuple(node, &moved.x);
+    low = glm::min(low, moved);
+    high = glm::max(high, moved);
+    return GetPoint(output, node) + moved;
+  };
+  double most = 0.0;
+  for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> ids;
+    output->GetCellPoints(cell, ids);
+    for (vtkIdType i = 1; i < 4; ++i)
+    {
+      const vtkIdType ends[2] = { ids->GetId(0), ids->GetId(i) };
+      const double rest = glm::length(GetPoint(output, ends[1]) - GetPoint(output, ends[0]));
+      most = std::max(most, std::abs(glm::length(look(ends[1]) - look(ends[0])) - rest));
+    }
+  }
+  // The lower half has no load either.
+  EXPECT_LT(most, 1e-4);
+  EXPECT_GT(high.z, 1.0);
 }
 
 TEST(ElasticCuts, FailedCuts)
