@@ -298,6 +298,8 @@ MUTATIONS = {
                    [CONDITIONS]),
     "fem-free-pieces": ("Kernels/Physics/BodyComponents.cxx", "i < number && !isRigid;", "i < number && false;",
                         [FINITE_ELEMENTS]),
+    "fem-dents": ("Kernels/FiniteElements/EquilibriumSolver.cxx",
+                  "if (after.IsConverged && other.Potential < state.Potential)", "if (false)", [FINITE_ELEMENTS]),
     "rounding-of-bone": ("Kernels/FiniteElements/EquilibriumSolver.cxx",
                          "      report.IsConverged = this->IsWithinRounding(problem, state, wanted);\n", "",
                          [FINITE_ELEMENTS]),

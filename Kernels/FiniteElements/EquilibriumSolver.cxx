@@ -159,6 +159,7 @@ std::vector<glm::dvec3> EquilibriumSolver::GetStart() const
 void EquilibriumSolver::Forget()
 {
   this->HasForces = false;
+  this->HasLookedForDents = false;
   this->HasTangent = false;
   this->ClampedSteps = 0;
   this->Tangent.Forget();
@@ -212,39 +213,45 @@ void EquilibriumSolver::UpdateTangent(
   this->IsTangentOld = false;
 }
 
+void EquilibriumSolver::MoveToNeighbors(AbortCheck& abortCheck, const EquilibriumProblem& problem,
+  const std::vector<unsigned char>& isChosen, const State& state, State& moved) const
+{
+  const BlockPattern& pattern = this->Tangent.GetMatrix().GetPattern();
+  moved.Displacements = state.Displacements;
+  ForRows(abortCheck, isChosen.size(),
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t node = begin; node < end; ++node)
+      {
+        if (isChosen[node] == 0 || problem.IsFree[node] == 0)
+        {
+          continue;
+        }
+        glm::dvec3 sum(0.0);
+        for (std::int32_t block = pattern.Rows[node]; block < pattern.Rows[node + 1]; ++block)
+        {
+          sum += state.Displacements[static_cast<std::size_t>(
+            pattern.Columns[static_cast<std::size_t>(block)])];
+        }
+        // Do not count the node itself, which is in the row as well.
+        const double neighbors = pattern.Rows[node + 1] - pattern.Rows[node] - 1;
+        moved.Displacements[node] =
+          this->Sliding.Project(node, (sum - state.Displacements[node]) / neighbors);
+      }
+    });
+  this->Evaluate(abortCheck, problem, moved);
+}
+
 void EquilibriumSolver::Untangle(
   AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state)
 {
   // Continue only while the energy falls by at least this fraction of the strain energy.
   constexpr double leastFall = 0.01;
-  const BlockPattern& pattern = this->Tangent.GetMatrix().GetPattern();
   std::vector<unsigned char> isInverted;
   while (state.Sums.Inverted > 0)
   {
     this->Elements.FindInvertedNodes(abortCheck, state.Displacements, isInverted);
-    this->Trial.Displacements = state.Displacements;
-    ForRows(abortCheck, isInverted.size(),
-      [&](std::size_t begin, std::size_t end)
-      {
-        for (std::size_t node = begin; node < end; ++node)
-        {
-          if (isInverted[node] == 0 || problem.IsFree[node] == 0)
-          {
-            continue;
-          }
-          glm::dvec3 sum(0.0);
-          for (std::int32_t block = pattern.Rows[node]; block < pattern.Rows[node + 1]; ++block)
-          {
-            sum += state.Displacements[static_cast<std::size_t>(
-              pattern.Columns[static_cast<std::size_t>(block)])];
-          }
-          // Do not count the node itself, which is in the row as well.
-          const double neighbors = pattern.Rows[node + 1] - pattern.Rows[node] - 1;
-          this->Trial.Displacements[node] =
-            this->Sliding.Project(node, (sum - state.Displacements[node]) / neighbors);
-        }
-      });
-    this->Evaluate(abortCheck, problem, this->Trial);
+    this->MoveToNeighbors(abortCheck, problem, isInverted, state, this->Trial);
     if (!(this->Trial.Potential < state.Potential - leastFall * state.Sums.Energy))
     {
       return;
@@ -460,6 +467,87 @@ void EquilibriumSolver::MoveFrozenPieces(
     this->Body, this->Pieces, problem.Supports.Following, isSettled, state.Displacements);
 }
 
+bool EquilibriumSolver::Iterate(AbortCheck& abortCheck, const EquilibriumProblem& problem,
+  double tolerance, State& state, EquilibriumReport& report)
+{
+  double before = 0.0;
+  StalledSteps stalledSteps;
+  bool hasStalled = false;
+  for (;;)
+  {
+    const Residuals residuals = FindResiduals(problem, this->Sliding, state.Forces);
+    if (!std::isfinite(residuals.Largest) || !std::isfinite(state.Potential))
+    {
+      throw Error(
+        "The forces in the body are infinite or not a number: a load or the displacement of "
+        "a handle is too large. The displacements are unchanged.");
+    }
+    report.Residual = residuals.Largest;
+    report.RelativeResidual =
+      residuals.Reference > 0.0 ? residuals.Largest / residuals.Reference : 0.0;
+    const double wanted =
+      std::max(tolerance * residuals.Reference, this->FindRounding(state.Displacements));
+    report.IsConverged = residuals.Largest <= wanted;
+    // Reuse a tangent of another state only while it reduces the residual by at least this factor.
+    constexpr double leastGain = 0.2;
+    if (before > 0.0 && residuals.Largest > leastGain * before)
+    {
+      this->HasTangent = false;
+    }
+    before = residuals.Largest;
+    hasStalled =
+      !report.IsConverged && stalledSteps.AreTooMany(residuals.Largest, state.Sums.Inverted > 0);
+    if (report.IsConverged || hasStalled || report.NewtonSteps >= problem.Limits.NewtonSteps)
+    {
+      break;
+    }
+    if (!this->Step(
+          abortCheck, problem, ChooseTolerance(problem, wanted / residuals.Largest), state, report))
+    {
+      // Beside soft tissue, the rounding errors of bone can be greater than the forces of the
+      // tissue allow.
+      report.IsConverged = this->IsWithinRounding(problem, state, wanted);
+      break;
+    }
+  }
+  return hasStalled;
+}
+
+void EquilibriumSolver::RemoveDents(AbortCheck& abortCheck, const EquilibriumProblem& problem,
+  double tolerance, State& state, EquilibriumReport& report)
+{
+  const std::vector<unsigned char> isInverted =
+    FindInvertedSplits(abortCheck, this->Body, state.Displacements);
+  std::vector<unsigned char> isChosen(problem.IsFree.size(), 0);
+  for (std::size_t t = 0; t < isInverted.size(); ++t)
+  {
+    this->Body.ForNodes(
+      t, [&](std::int32_t node) { isChosen[static_cast<std::size_t>(node)] |= isInverted[t]; });
+  }
+  if (std::find(isChosen.begin(), isChosen.end(), 1) == isChosen.end())
+  {
+    return;
+  }
+  State other;
+  this->MoveToNeighbors(abortCheck, problem, isChosen, state, other);
+  if (!std::isfinite(other.Potential))
+  {
+    return;
+  }
+  EquilibriumReport after = report;
+  this->HasTangent = false;
+  this->Iterate(abortCheck, problem, tolerance, other, after);
+  if (after.IsConverged && other.Potential < state.Potential)
+  {
+    std::swap(state, other);
+    report = after;
+    return;
+  }
+  report.NewtonSteps = after.NewtonSteps;
+  report.LinearIterations = after.LinearIterations;
+  this->HasTangent = false;
+}
+
 EquilibriumReport EquilibriumSolver::FindEquilibrium(
   AbortCheck& abortCheck, const EquilibriumRequest& request, const EquilibriumProblem& problem)
 {
@@ -509,45 +597,11 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
     problem.IsInteractive && isMoved && request.Limits.RelativeTolerance == 0.0
     ? toleranceOfFrames
     : limits.RelativeTolerance;
-  double before = 0.0;
-  StalledSteps stalledSteps;
-  bool hasStalled = false;
-  for (;;)
+  const bool hasStalled = this->Iterate(abortCheck, problem, tolerance, state, report);
+  const bool looksForDents = !problem.IsInteractive && report.IsConverged;
+  if (looksForDents && (report.NewtonSteps > 0 || !this->HasLookedForDents))
   {
-    const Residuals residuals = FindResiduals(problem, this->Sliding, state.Forces);
-    if (!std::isfinite(residuals.Largest) || !std::isfinite(state.Potential))
-    {
-      throw Error(
-        "The forces in the body are infinite or not a number: a load or the displacement of "
-        "a handle is too large. The displacements are unchanged.");
-    }
-    report.Residual = residuals.Largest;
-    report.RelativeResidual =
-      residuals.Reference > 0.0 ? residuals.Largest / residuals.Reference : 0.0;
-    const double wanted =
-      std::max(tolerance * residuals.Reference, this->FindRounding(state.Displacements));
-    report.IsConverged = residuals.Largest <= wanted;
-    // Reuse a tangent of another state only while it reduces the residual by at least this factor.
-    constexpr double leastGain = 0.2;
-    if (before > 0.0 && residuals.Largest > leastGain * before)
-    {
-      this->HasTangent = false;
-    }
-    before = residuals.Largest;
-    hasStalled =
-      !report.IsConverged && stalledSteps.AreTooMany(residuals.Largest, state.Sums.Inverted > 0);
-    if (report.IsConverged || hasStalled || report.NewtonSteps >= limits.NewtonSteps)
-    {
-      break;
-    }
-    if (!this->Step(
-          abortCheck, problem, ChooseTolerance(problem, wanted / residuals.Largest), state, report))
-    {
-      // Beside soft tissue, the rounding errors of bone can be greater than the forces of the
-      // tissue allow.
-      report.IsConverged = this->IsWithinRounding(problem, state, wanted);
-      break;
-    }
+    this->RemoveDents(abortCheck, problem, tolerance, state, report);
   }
   if (report.NewtonSteps > 1 && this->IsTangentOld)
   {
@@ -557,10 +611,12 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   this->IsTangentOld = true;
   this->MoveFrozenPieces(problem, report, state);
   report.StrainEnergy = state.Sums.Energy;
-  report.NumberOfInvertedTetrahedra =
-    CountInvertedSplits(abortCheck, this->Body, state.Displacements);
+  const std::vector<unsigned char> isInverted =
+    FindInvertedSplits(abortCheck, this->Body, state.Displacements);
+  report.NumberOfInvertedTetrahedra = std::count(isInverted.begin(), isInverted.end(), 1);
   std::swap(this->Last, state);
   this->HasForces = true;
+  this->HasLookedForDents = looksForDents;
   this->HasStalled = hasStalled;
   if (hasStalled)
   {

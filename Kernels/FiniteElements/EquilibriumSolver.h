@@ -69,6 +69,9 @@ private:
   // whether any held node moved.
   bool MoveHeldNodes(AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state,
     EquilibriumReport& report);
+  // Moves the chosen free nodes to the mean of their neighbors.
+  void MoveToNeighbors(AbortCheck& abortCheck, const EquilibriumProblem& problem,
+    const std::vector<unsigned char>& isChosen, const State& state, State& moved) const;
   // Moves the free nodes of inverted tetrahedra to the mean of their neighbors, as long as this
   // reduces the energy. Newton's method alone would take many steps: it turns each inverted
   // tetrahedron independently of its neighbors.
@@ -83,6 +86,13 @@ private:
   bool Clamp();
   // Line search along the direction. Returns false if no step length reduces the energy.
   bool Search(AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state);
+  // Newton's method. Returns whether it gave up because the body is tangled.
+  bool Iterate(AbortCheck& abortCheck, const EquilibriumProblem& problem, double tolerance,
+    State& state, EquilibriumReport& report);
+  // A few tetrahedra can stay inverted in an equilibrium of their own. Looks for an equilibrium of
+  // less energy from a state in which their nodes have moved to the mean of their neighbors.
+  void RemoveDents(AbortCheck& abortCheck, const EquilibriumProblem& problem, double tolerance,
+    State& state, EquilibriumReport& report);
   // One Newton step. Returns false if no step reduces the energy.
   bool Step(AbortCheck& abortCheck, const EquilibriumProblem& problem, double tolerance,
     State& state, EquilibriumReport& report);
@@ -108,6 +118,8 @@ private:
   // The state after the last call. Its forces are still valid if HasForces.
   State Last;
   bool HasForces = false;
+  // The last call ended with RemoveDents, or without need of it.
+  bool HasLookedForDents = false;
   // The last call gave up with inverted tetrahedra. The next one starts at rest.
   bool HasStalled = false;
 };

@@ -290,16 +290,15 @@ void FindBatchResults(const ElementBatch& batch, const double* displacements,
 
 } // namespace
 
-std::int64_t CountInvertedSplits(
+std::vector<unsigned char> FindInvertedSplits(
   AbortCheck& abortCheck, const ElasticBody& body, const std::vector<glm::dvec3>& displacements)
 {
   constexpr std::size_t size = 1024;
-  const std::size_t parts = (body.Tetrahedra.size() + size - 1) / size;
-  std::vector<std::int64_t> numbers(parts, 0);
-  ForParts(abortCheck, parts, ChunksAtOnce,
+  std::vector<unsigned char> isInverted(body.Tetrahedra.size(), 0);
+  ForParts(abortCheck, (isInverted.size() + size - 1) / size, ChunksAtOnce,
     [&](std::size_t part)
     {
-      const std::size_t end = std::min(body.Tetrahedra.size(), (part + 1) * size);
+      const std::size_t end = std::min(isInverted.size(), (part + 1) * size);
       for (std::size_t t = part * size; t < end; ++t)
       {
         std::array<glm::dvec3, QuadraticTetrahedron::NumberOfNodes> points{};
@@ -312,10 +311,10 @@ std::int64_t CountInvertedSplits(
             points[i++] = body.Points[static_cast<std::size_t>(node)] +
               displacements[static_cast<std::size_t>(node)];
           });
-        numbers[part] += QuadraticTetrahedron::IsSplitInverted(points, isMirrored) ? 1 : 0;
+        isInverted[t] = QuadraticTetrahedron::IsSplitInverted(points, isMirrored) ? 1 : 0;
       }
     });
-  return std::accumulate(numbers.begin(), numbers.end(), std::int64_t{ 0 });
+  return isInverted;
 }
 
 FiniteElements::Sums FiniteElements::FindForces(AbortCheck& abortCheck,

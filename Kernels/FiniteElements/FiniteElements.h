@@ -75,9 +75,9 @@ private:
   std::vector<BatchPositions> Positions;
 };
 
-/// Counts tetrahedra of which one of twelve linear parts is inverted (see
+/// Returns for each tetrahedron whether one of its twelve linear parts is inverted (see
 /// EquilibriumReport::NumberOfInvertedTetrahedra).
-std::int64_t CountInvertedSplits(
+std::vector<unsigned char> FindInvertedSplits(
   AbortCheck& abortCheck, const ElasticBody& body, const std::vector<glm::dvec3>& displacements);
 
 } // namespace deformvolume
