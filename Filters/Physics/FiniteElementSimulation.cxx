@@ -92,10 +92,10 @@ void FiniteElementSimulation::Warn(const EquilibriumReport& last)
   if (now.NumberOfInvertedTetrahedra > 0 &&
     (!isInteractive || last.NumberOfInvertedTetrahedra == 0))
   {
-    text << now.NumberOfInvertedTetrahedra
-         << " tetrahedra are inverted (inside out). Move handles and loads in smaller steps, or "
-            "make a better "
-            "mesh.";
+    text
+      << now.NumberOfInvertedTetrahedra
+      << " tetrahedra are inverted (inside out). Move handles and loads in smaller steps, or "
+         "make a better mesh. Reset() brings a body back to rest that stays dented without loads.";
     this->Warnings.push_back(text.str());
   }
 }
