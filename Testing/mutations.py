@@ -550,6 +550,8 @@ MUTATIONS = {
         "true", ["Cxx.TestDeformGeometryFilter"]),
     "points-direction": ("Filters/vtkDeformGeometryFilter.cxx", "this->IsInverted = this->Self->Inverse != (isField",
         "this->IsInverted = this->Self->Inverse || (isField", ["Cxx.TestDeformGeometryFilter"]),
+    "keep-dropped": ("Kernels/World/DeviceSession.cxx", "        this->HasFadedMesh = false;\n", "",
+                     ["Cxx.TestDeformKeep"]),
     "split-places": ("Kernels/World/DeviceSession.cxx", "|| (openSplits && hasSplit)", "", [PIPELINES]),
     "split-shape": ("Filters/DeformationMesh/RestMesh.cxx",
                     "inPlace &= this->Points[change.Before[k]] == this->Points[change.After[k]];",

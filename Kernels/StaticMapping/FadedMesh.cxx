@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FadedMesh.h"
 
+#include "Error.h"
+
 #include <algorithm>
+#include <string>
 
 namespace deformvolume
 {
@@ -53,6 +56,11 @@ std::vector<TetrahedronChange> FadedMesh::Change(
 void FadedMesh::Move(
   const float* displacements, std::size_t numberOfNodes, const PointRanges* changes)
 {
+  if (!this->HasRoom(numberOfNodes))
+  {
+    throw Error("The displacements are those of " + std::to_string(numberOfNodes) +
+      " nodes, but the faded mesh has room for fewer. Set the mesh first.");
+  }
   const PointRanges all{ { { 0, numberOfNodes } } };
   for (const auto& range : changes ? *changes : all)
   {

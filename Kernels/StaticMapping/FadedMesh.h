@@ -30,7 +30,7 @@ public:
   std::vector<TetrahedronChange> Change(
     const FadedLinks& links, const std::vector<TetrahedronChange>& changes);
   /// Set the displacements. changes: the nodes whose displacements have changed since the last
-  /// call; null: any may have changed.
+  /// call; null: any may have changed. Throws an Error if the mesh has no room for the nodes.
   void Move(const float* displacements, std::size_t numberOfNodes, const PointRanges* changes);
 
   /// The tetrahedra of the mesh, followed by the faded tetrahedra.

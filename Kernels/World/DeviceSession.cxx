@@ -281,6 +281,7 @@ void DeviceSession::SetRestMesh(const IndexDeformation& deformation, const Image
         this->Deformer.SetRestMesh(mesh.Tetrahedra.data(), mesh.Tetrahedra.size(),
           mesh.Points.size(), &mesh.Points.front().x);
         this->HasFadedMesh = false;
+        this->Faded = FadedMesh(); // frees its memory
       }
       if (!meshIsSent || this->SentVectors != deformation.GetVectorsVersion())
       {

@@ -565,4 +565,30 @@ TEST(DeformKeep, OtherSettings)
   EXPECT_EQ(subject.Filter->GetNumberOfCoveredVoxels(), 83 * 67 * 59);
 }
 
+// A larger mesh for the other resampler, which uses the nodes of the mesh alone.
+TEST(DeformKeep, ThenRasterization)
+{
+  const auto volume = MakeTissue({ { 0, 20, 0, 18, 0, 16 } });
+  const auto small = MakeBox(glm::dvec3(5.2), glm::dvec3(11.7));
+  const auto large = MakeBox(glm::dvec3(0.0), { 20.0, 18.0, 16.0 }, glm::ivec3(16));
+  SetDisplacements(small, Shift(0.5, 0.0, 0.0));
+  SetDisplacements(large, Shift(1.0, -0.5, 0.25));
+  Kept subject(volume, small, 4.0);
+  subject.Update();
+  Deformed expected(volume, large);
+  for (Deformed* deformed : std::initializer_list<Deformed*>{ &subject, &expected })
+  {
+    deformed->Filter->SetOutsideModeToDiscard();
+    deformed->Filter->SetResamplerToMeshRasterization();
+    deformed->Filter->SetDeformationData(large);
+  }
+  EXPECT_TRUE(AreEqual(subject.Update(), expected.Update()));
+  // And back.
+  subject.Filter->SetOutsideModeToKeep();
+  subject.Filter->SetResamplerToAutomatic();
+  subject.Filter->SetDeformationData(small);
+  Kept kept(volume, small, 4.0);
+  EXPECT_TRUE(AreEqual(subject.Update(), kept.Update()));
+}
+
 } // namespace

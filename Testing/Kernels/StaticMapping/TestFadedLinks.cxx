@@ -516,6 +516,11 @@ TEST(FadedLinks, Misuse)
   const StaticMapping nothing = BuildStaticMapping(
     { { 0, 2, 0, 2, 0, 2 } }, glm::dvec3(1.0), {}, {}, KeepWithin(1.0), StaticMappingForm::Links);
   EXPECT_TRUE(nothing.Links.size() == 27 && nothing.Links[13].Tetrahedron == 0);
+  // The displacements of a larger mesh.
+  FadedMesh faded;
+  faded.Set(nothing.Faded, {}, 8);
+  const std::vector<float> displacements(3 * faded.GetNumberOfNodes());
+  EXPECT_THROW(faded.Move(displacements.data(), faded.GetNumberOfNodes(), nullptr), Error);
 }
 
 } // namespace
