@@ -334,11 +334,16 @@ bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
   const glm::dvec3 index = inside.ToIndex * (point - inside.Origin);
   const glm::dvec3 nearest = glm::clamp(index, glm::dvec3(0.0), glm::dvec3(inside.Last));
   bool isOutside = false;
+  bool isBeside = false;
+  glm::dmat3 reported(1.0);
   glm::dmat3 clamped(1.0);
   for (int axis = 0; axis < 3; ++axis)
   {
     const double beyond = std::abs(index[axis] - nearest[axis]);
     isOutside = isOutside || beyond > inside.Field.Tolerance;
+    isBeside = isBeside || (beyond > 0.0 && beyond <= inside.Field.Tolerance);
+    // Points that rounding has moved across the border have the derivatives of the field.
+    reported[axis][axis] = beyond > inside.Field.Tolerance ? 0.0 : 1.0;
     clamped[axis][axis] = beyond > 0.0 ? 0.0 : 1.0;
   }
   image = { point };
@@ -370,8 +375,12 @@ bool FieldPointMap::Map(const glm::dvec3& point, Image& image) const
   const glm::dvec3 displacement = Interpolate(inside.GetVectors(cell), position, gradient);
   image.FadingDisplacement = weight < 1.0 ? glm::length(displacement) : 0.0;
   image.Point += weight * displacement;
-  image.Gradient +=
-    weight * gradient * clamped * inside.ToIndex + glm::outerProduct(displacement, slope);
+  const glm::dmat3 fading = glm::outerProduct(displacement, slope);
+  image.Gradient += weight * gradient * reported * inside.ToIndex + fading;
+  if (isBeside)
+  {
+    image.StepGradient = glm::dmat3(1.0) + (weight * gradient * clamped * inside.ToIndex + fading);
+  }
   return true;
 }
 

@@ -17,6 +17,11 @@ constexpr double ShortestStep = 1.0 / 1024.0;
 // A map with a smaller determinant of its derivative counts as not invertible.
 constexpr double LeastDeterminant = 1e-12;
 
+bool IsRegular(const glm::dmat3& gradient)
+{
+  return std::abs(glm::determinant(gradient)) > LeastDeterminant;
+}
+
 } // namespace
 
 PointMap::~PointMap() = default;
@@ -43,14 +48,13 @@ bool PointMap::Solve(const glm::dvec3& point, const glm::dvec3& start, Image& im
     }
     return isNearer;
   };
-  const auto isRegular = [&]
-  { return std::abs(glm::determinant(here.Gradient)) > LeastDeterminant; };
+  const auto getSteps = [&] { return here.StepGradient.value_or(here.Gradient); };
   for (int i = 0; i < MostSteps && glm::length(miss) > this->SolutionTolerance; ++i)
   {
     bool done = false;
-    if (isRegular())
+    if (IsRegular(getSteps()))
     {
-      const glm::dvec3 step = glm::inverse(here.Gradient) * miss;
+      const glm::dvec3 step = glm::inverse(getSteps()) * miss;
       for (double part = 1.0; !done && part >= ShortestStep; part *= 0.5)
       {
         done = tryStep(part * step);
@@ -61,12 +65,12 @@ bool PointMap::Solve(const glm::dvec3& point, const glm::dvec3& start, Image& im
       return false;
     }
   }
-  if (!(glm::length(miss) <= this->SolutionTolerance) || !isRegular())
+  if (!(glm::length(miss) <= this->SolutionTolerance) || !IsRegular(getSteps()))
   {
     return false;
   }
   image.Point = position;
-  image.Gradient = glm::inverse(here.Gradient);
+  image.Gradient = glm::inverse(IsRegular(here.Gradient) ? here.Gradient : getSteps());
   image.FadingDisplacement = here.FadingDisplacement;
   return true;
 }

@@ -8,6 +8,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include <optional>
+
 namespace deformvolume
 {
 
@@ -23,6 +25,10 @@ public:
     glm::dvec3 Point{ 0.0 };
     /// Derivatives of Point with respect to the original position: column k for coordinate k.
     glm::dmat3 Gradient{ 1.0 };
+    /// The derivatives for Newton's method, where they differ from Gradient: points that are within
+    /// the tolerance outside the border of a field move with the border, although their vectors
+    /// and normals change as inside.
+    std::optional<glm::dmat3> StepGradient = std::nullopt;
     /// For a point whose displacement fades outside the mesh or the field: length of the
     /// displacement of the closest point on the boundary of the mesh or the border of the field.
     /// Otherwise 0.

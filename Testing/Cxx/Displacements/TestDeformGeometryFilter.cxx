@@ -569,6 +569,70 @@ TEST(DeformGeometryFilter, Arrays)
   }
 }
 
+// Vectors and normals of points on the border of a field, and of points that rounding has moved
+// across it by less than the tolerance of its faces.
+void TestArraysOnTheBorder(double factor)
+{
+  const auto stretch = [factor](const glm::dvec3& p) { return factor * p; };
+  const auto keep = [](const glm::dvec3& p) { return p; };
+  auto field = MakeImage({ { 0, 7, 0, 7, 0, 7 } }, glm::dvec3(0.1), glm::dvec3(0.1));
+  SetDisplacements(field, stretch);
+  std::vector<glm::dvec3> positions;
+  for (vtkIdType id = 0; id < field->GetNumberOfPoints(); ++id)
+  {
+    positions.push_back(GetPoint(field, id));
+  }
+  for (const double away : { 0.1 - 1e-6, 0.1 - 1e-9, 0.8 + 1e-9, 0.8 + 1e-6 })
+  {
+    positions.insert(positions.end(), { glm::dvec3(away), { 0.33, away, 0.44 } });
+  }
+  const glm::dvec3 normal(0.6, 0.8, 0.0);
+  const auto verify =
+    [&](const WorldMap& place, bool inverse, bool fieldIsInverse, int mode, int precision)
+  {
+    std::vector<glm::dvec3> placed;
+    for (const glm::dvec3& position : positions)
+    {
+      placed.push_back(place(position));
+    }
+    auto points = MakePoints(placed, precision);
+    points->GetPointData()->SetVectors(
+      AddArray(points, "v", [](const glm::dvec3&) { return glm::dvec3(1.0); }));
+    points->GetPointData()->SetNormals(
+      AddArray(points, "n", [&](const glm::dvec3&) { return normal; }));
+    Subject subject(points, field);
+    subject.Filter->SetOutsideMode(mode);
+    subject.Filter->SetFadeDistance(1.0);
+    subject.Filter->SetInverse(inverse);
+    subject.Filter->SetFieldIsInverse(fieldIsInverse);
+    vtkPointData* output = subject.Update()->GetPointData();
+    EXPECT_EQ(subject.Filter->GetNumberOfOutsidePoints(), 0);
+    const double ratio = inverse != fieldIsInverse ? 1.0 / factor : factor;
+    double worst = 0.0;
+    for (vtkIdType id = 0; id < points->GetNumberOfPoints(); ++id)
+    {
+      worst = std::max({ worst, glm::length(GetTuple(output->GetVectors(), id) - ratio),
+        glm::length(GetTuple(output->GetNormals(), id) - normal) });
+    }
+    EXPECT_LT(worst, 1e-4) << "factor " << factor << ", inverse " << inverse << ", mode " << mode;
+  };
+  for (const int mode : { Discard, Extrapolate, Keep })
+  {
+    for (const int precision : { VTK_FLOAT, VTK_DOUBLE })
+    {
+      verify(keep, false, false, mode, precision);
+      verify(stretch, true, false, mode, precision);
+      verify(stretch, false, true, mode, precision);
+    }
+  }
+}
+
+TEST(DeformGeometryFilter, ArraysOnTheBorder)
+{
+  TestArraysOnTheBorder(1.5);
+  TestArraysOnTheBorder(20.0);
+}
+
 // After an error in the second block, the points of the first block are not counted.
 TEST(DeformGeometryFilter, OutsideOfAFailedUpdate)
 {
