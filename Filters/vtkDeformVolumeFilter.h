@@ -403,7 +403,9 @@ public:
   /**
    * Set/Get whether an update resamples only the parts of the volume that a changed deformation or
    * mask affects. The result has the same bits. Needs the resampler EXACT and an output of the same
-   * extent as the last one. Default: on.
+   * extent as the last one. A program that writes values of the output works on a copy, or calls
+   * Modified() of each array that it has written: otherwise the next update keeps these values
+   * where nothing changes. Default: on.
    */
   vtkSetMacro(Incremental, bool);
   vtkGetMacro(Incremental, bool);

@@ -75,6 +75,26 @@ TEST(DeformIncremental, ChangedExtent)
   expect({ { -5, 132, 0, 92, -2, 82 } });
 }
 
+// Values that a program has written into an array of the output, and marked as modified, are not
+// kept.
+TEST(DeformIncremental, WrittenOutput)
+{
+  const auto volume = MakeVolume({ { -3, 130, 2, 90, 0, 80 } });
+  const auto mesh = MakeMesh(volume, 12, 3.0);
+  SetDisplacements(mesh, Shift(0.25, 0.0, 0.0));
+  Deformed deformed(volume, mesh);
+  deformed.Filter->SetOutputBoundsModeToVolumeBounds();
+  vtkDataArray* values = deformed.Update()->GetPointData()->GetScalars();
+  values->Fill(77.0);
+  values->Modified();
+  vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+  vectors->SetTuple3((6 * 12 + 6) * 12 + 6, 1.0, 0.5, 0.5);
+  vectors->Modified();
+  Deformed expected(volume, mesh);
+  expected.Filter->SetOutputBoundsModeToVolumeBounds();
+  EXPECT_TRUE(AreEqual(deformed.Update(), expected.Update()));
+}
+
 // The defaults of the property and of the report, and the modified time.
 TEST(DeformIncremental, IncrementalProperty)
 {
