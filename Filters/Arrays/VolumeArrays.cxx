@@ -166,7 +166,9 @@ std::vector<SourceArray> SelectArrays(
     ElementType type;
     if (!array || !FindElementType(array->GetDataType(), type))
     {
-      leftOut.push_back(GetLabel(abstract, i) + " (" + abstract->GetDataTypeAsString() + ")");
+      const bool isBits = abstract->GetDataType() == VTK_BIT;
+      leftOut.push_back(GetLabel(abstract, i) + " (" + abstract->GetDataTypeAsString() +
+        (isBits ? ", which vtkUnsignedCharArray::DeepCopy() converts)" : ")"));
       continue;
     }
     if (array->GetNumberOfTuples() != volume->GetNumberOfPoints())
@@ -193,7 +195,8 @@ std::vector<SourceArray> SelectArrays(
   if (arrays.empty())
   {
     throw Error("The volume on input port 0 has no numeric point array, so there is nothing to "
-                "deform. Connect a vtkImageData with point scalars.");
+                "deform. Connect a vtkImageData with point scalars." +
+      (leftOut.empty() ? "" : " Its type cannot be resampled: " + leftOut.front() + "."));
   }
   return arrays;
 }

@@ -5,6 +5,7 @@
 #include "FilterTesting.h"
 #include "PolyhedronCells.h"
 
+#include <vtkBitArray.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
@@ -92,6 +93,10 @@ TEST_F(DeformMisuse, Volumes)
   auto bare = MakeImage({ { 0, 4, 0, 4, 0, 4 } });
   this->GetFilter()->SetInputData(bare);
   this->Expect("a volume without arrays", "no numeric point array");
+  const auto bits = MakeArray<vtkBitArray>("bits", bare->GetNumberOfPoints());
+  bare->GetPointData()->SetScalars(bits);
+  this->GetFilter()->SetInputData(bare);
+  this->Expect("a volume of bits", "\"bits\" (bit, which vtkUnsignedCharArray");
 
   auto strange = MakeVolume();
   strange->SetSpacing(1.0, 0.0, 1.0);
