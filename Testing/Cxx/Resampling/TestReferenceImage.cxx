@@ -43,6 +43,7 @@ vtkSmartPointer<vtkImageData> MakeOblique()
   auto volume =
     MakeImage({ { -7, 8, 3, 17, -20, -8 } }, glm::dvec3(0.7, 1.3, 1.1), glm::dvec3(4.0, -5.0, 2.5));
   SetObliqueDirection(volume);
+  AddScalars<short>(volume, "kernels", GetValue); // with it the kernels are those of other tests
   AddScalars<float>(volume, "value", GetValue);
   return volume;
 }
@@ -187,6 +188,7 @@ TEST(ReferenceImage, Rotated)
     auto even = MakeImage(
       { { -8, 8, 4, 18, -20, -8 } }, glm::dvec3(0.7, 1.3, 1.1), glm::dvec3(4.0, -5.0, 2.5));
     SetObliqueDirection(even);
+    AddScalars<short>(even, "kernels", GetValue);
     AddScalars<float>(even, "value", GetValue);
     OnReference coarse(even, MakeMoved(even), reference);
     coarse.Filter->SetSamplingFactor(2);
