@@ -408,6 +408,8 @@ MUTATIONS = {
     "cell-points": ("Filters/DeformationMesh/RestMesh.cxx",
                     "(!this->CellsDependOnPoints || !this->HavePointsChanged(rest, source));", "true;",
                     ["Cxx.TestDeformMeshes", "Cxx.TestHigherOrderCells"]),
+    "rest-derived": ("Filters/DeformationMesh/RestMesh.cxx", "(this->Derived.GetCount() == 0 || nodes == nodesBefore)",
+                     "true", ["Cxx.TestDeformMeshes"]),
     "mask-valid": ("Filters/Arrays/MaskArray.cxx", "isValid == 0 ? vtkDataSetAttributes::HIDDENPOINT : 0", "0",
                    ["Cxx.TestDeformMasks"]),
     "elastic-cells": ("Filters/Physics/BodyReading.cxx",

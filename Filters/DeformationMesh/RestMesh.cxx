@@ -79,8 +79,8 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   const bool hasFailed = this->ShapeIsOld;
   this->RestCells = this->ShapeCells = MeshStamp(); // equal no other stamps if a call below throws
   // The indices of derived nodes follow those of all other nodes.
-  const bool keepsDerived =
-    !cells.Derived && (this->Derived.GetCount() == 0 || nodes == nodesBefore);
+  const bool keepsDerived = !cells.Derived ||
+    (*cells.Derived == this->Derived && (this->Derived.GetCount() == 0 || nodes == nodesBefore));
   if (!keepsDerived)
   {
     this->ShapeIsOld = true;
@@ -198,10 +198,7 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
     reading.Ignored = cells.Ignored;
     reading.WrongOrder = cells.WrongOrder;
     reading.DependOnPoints = cells.DependOnPoints;
-    if (!(cells.Derived == this->Derived))
-    {
-      reading.Derived = std::move(cells.Derived);
-    }
+    reading.Derived = std::move(cells.Derived);
     reading.Differences = FindDifferences(this->Tetrahedra, cells.Tetrahedra);
     reading.All = std::move(cells.Tetrahedra);
   }

@@ -65,8 +65,8 @@ private:
   struct CellReading
   {
     std::optional<Changes> Differences;  // nothing: the number of tetrahedra has changed
-    std::vector<Tetrahedron> All;        // empty: the cells have not changed
-    std::optional<DerivedNodes> Derived; // nothing: they have not changed
+    std::vector<Tetrahedron> All;        // empty: the cells were not read
+    std::optional<DerivedNodes> Derived; // nothing: the cells were not read
     std::string Ignored;
     std::string WrongOrder;
     bool DependOnPoints = false;

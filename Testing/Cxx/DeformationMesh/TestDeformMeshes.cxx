@@ -4,6 +4,7 @@
 // warnings about vectors and tensors of the volume, which the filter does not rotate.
 #include "ArrayMaking.h"
 #include "FilterTesting.h"
+#include "TenNodeCells.h"
 #include "UpdateChecks.h"
 
 #include <vtkArrayChanges.h>
@@ -188,6 +189,35 @@ TEST(DeformMeshes, UnusedNodesThatChange)
   tested.Update();
   tested.Filter->SetBoundsGranularity(16);
   CompareWithFresh(tested, fresh, "the use of a node", parts);
+}
+
+// Nodes that are added or removed move the derived nodes of other cells, which are the same.
+TEST(DeformMeshes, NodesBesideDerivedNodes)
+{
+  const auto volume = MakeVolume({ { 0, 12, 0, 12, 0, 12 } });
+  const Grid mesh = MakeTenNodes(MakeMesh(volume));
+  SetDisplacements(mesh, Bend);
+  const Grid more = Grid::New();
+  more->DeepCopy(mesh);
+  for (int i = 0; i < 3; ++i)
+  {
+    more->GetPoints()->InsertNextPoint(6.0, 6.0, 6.0);
+    more->GetPointData()->GetVectors()->InsertNextTuple3(0.0, 0.0, 0.0);
+  }
+  vtkNew<vtkMultiBlockDataSet> one;
+  one->SetBlock(0, mesh);
+  vtkNew<vtkMultiBlockDataSet> two;
+  two->SetBlock(0, mesh);
+  two->SetBlock(1, MakeBentMesh(volume));
+  Deformed tested(volume, mesh);
+  tested.Update();
+  int parts = 0;
+  for (vtkDataObject* next : std::initializer_list<vtkDataObject*>{ more, mesh, one, two, one })
+  {
+    tested.Filter->SetDeformationData(next);
+    Deformed fresh(volume, next);
+    CompareWithFresh(tested, fresh, next->GetClassName(), parts);
+  }
 }
 
 Grid MakeShells()
