@@ -410,6 +410,8 @@ MUTATIONS = {
                     ["Cxx.TestDeformMeshes", "Cxx.TestHigherOrderCells"]),
     "rest-derived": ("Filters/DeformationMesh/RestMesh.cxx", "(this->Derived.GetCount() == 0 || nodes == nodesBefore)",
                      "true", ["Cxx.TestDeformMeshes"]),
+    "body-flat": ("Filters/Meshing/ClosedSurface.cxx", "decimation->AttributeErrorMetricOn();", "",
+                  ["Cxx.TestTetGenMesher"]),
     "mask-valid": ("Filters/Arrays/MaskArray.cxx", "isValid == 0 ? vtkDataSetAttributes::HIDDENPOINT : 0", "0",
                    ["Cxx.TestDeformMasks"]),
     "elastic-cells": ("Filters/Physics/BodyReading.cxx",

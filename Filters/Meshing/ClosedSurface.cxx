@@ -4,14 +4,19 @@
 #include "vtkAdaptiveSubdivisionFilter.h"
 #include "vtkCellArray.h"
 #include "vtkCleanPolyData.h"
+#include "vtkDoubleArray.h"
 #include "vtkFeatureEdges.h"
 #include "vtkMassProperties.h"
 #include "vtkMath.h"
 #include "vtkOBBTree.h"
+#include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkQuadricDecimation.h"
 #include "vtkTriangleFilter.h"
+
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +67,53 @@ bool LiesInPlane(vtkPolyData* surface)
   vtkNew<vtkOBBTree> tree;
   tree->ComputeOBB(points, corner, axes[0], axes[1], axes[2], sizes);
   return !(vtkMath::Norm(axes[2]) > 1e-6 * vtkMath::Norm(axes[0]));
+}
+
+// Moves points to `factor` times their coordinates plus a shift.
+vtkSmartPointer<vtkPolyData> Transform(vtkPolyData* surface, double factor, const glm::dvec3& shift)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(surface->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < surface->GetNumberOfPoints(); ++id)
+  {
+    glm::dvec3 point;
+    surface->GetPoint(id, &point.x);
+    point = factor * point + shift;
+    points->SetPoint(id, &point.x);
+  }
+  auto result = vtkSmartPointer<vtkPolyData>::New();
+  result->SetPoints(points);
+  result->SetPolys(surface->GetPolys());
+  return result;
+}
+
+// Makes decimation keep triangles with edges of about the length 1 where the surface is flat or
+// straight. There the quadrics of positions have no error, but those of squared coordinates have:
+// linear interpolation of a square along an edge is wrong by up to a quarter of the squared length.
+void LimitEdges(vtkQuadricDecimation* decimation, vtkPolyData* surface)
+{
+  vtkNew<vtkDoubleArray> squares;
+  squares->SetNumberOfComponents(3);
+  squares->SetNumberOfTuples(surface->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < surface->GetNumberOfPoints(); ++id)
+  {
+    glm::dvec3 point;
+    surface->GetPoint(id, &point.x);
+    point *= point;
+    squares->SetTuple(id, &point.x);
+  }
+  double range = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double* const limits = squares->GetRange(axis);
+    range = std::max(range, limits[1] - limits[0]);
+  }
+  surface->GetPointData()->SetVectors(squares);
+  decimation->AttributeErrorMetricOn();
+  // The filter divides by the range. With less than a quarter flat surfaces, and with more round
+  // surfaces, get longer edges.
+  decimation->SetVectorsWeight(0.25 * range);
 }
 
 } // namespace
@@ -155,12 +207,18 @@ vtkSmartPointer<vtkPolyData> Decimate(vtkPolyData* surface, double edgeLength)
   {
     return surface;
   }
+  // Decimation moves nodes, but adds none: the sides of a cylinder may have none but at their ends.
+  const auto split = SplitLongEdges(surface, 1.5 * edgeLength);
+  // The decimation has absolute tolerances.
+  const glm::dvec3 center = glm::make_vec3(split->GetCenter());
+  const auto input = Transform(split, 1.0 / edgeLength, -center / edgeLength);
   vtkNew<vtkQuadricDecimation> decimation;
-  decimation->SetInputData(surface);
-  decimation->SetTargetReduction(1.0 - wanted / present);
+  LimitEdges(decimation, input);
+  decimation->SetInputData(input);
+  decimation->SetTargetReduction(1.0 - wanted / static_cast<double>(split->GetNumberOfPolys()));
   decimation->VolumePreservationOn();
   decimation->Update();
-  auto decimated = CleanTriangles(decimation->GetOutput());
+  auto decimated = CleanTriangles(Transform(decimation->GetOutput(), edgeLength, center));
   return IsClosedManifold(decimated) ? decimated : nullptr;
 }
 

@@ -23,9 +23,9 @@ void CheckClosedSurface(vtkPolyData* surface);
 /// Whether every edge belongs to exactly two triangles.
 bool IsClosedManifold(vtkPolyData* surface);
 
-/// Returns the surface with fewer triangles, whose edges have about the given length. Returns the
-/// surface itself if its edges are that long already, and null if the decimated surface is not a
-/// closed manifold.
+/// Returns the surface with fewer triangles, whose edges have about the given length, also where
+/// the surface is flat. Returns the surface itself if its edges are that long already, and null if
+/// the decimated surface is not a closed manifold.
 vtkSmartPointer<vtkPolyData> Decimate(vtkPolyData* surface, double edgeLength);
 
 /// Returns the surface with edges that are split until none is longer than the given length.

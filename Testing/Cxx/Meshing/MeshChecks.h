@@ -134,6 +134,7 @@ struct Summary
   vtkIdType OverusedFaces = 0;     // shared by more than two tetrahedra
   vtkIdType OpenBoundaryEdges = 0; // that belong to an odd number of boundary faces
   double MeanEdge = 0.0;
+  double LongestEdge = 0.0;
   double PoorShare = 0.0; // the share of tetrahedra with a radius-edge ratio over 2
 };
 
@@ -179,6 +180,7 @@ inline Summary Summarize(vtkUnstructuredGrid* mesh)
       {
         const double length = glm::distance(p[i], p[j]);
         edges += length;
+        summary.LongestEdge = std::max(summary.LongestEdge, length);
         shortest = std::min(shortest, length);
       }
     }

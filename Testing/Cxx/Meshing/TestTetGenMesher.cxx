@@ -5,6 +5,7 @@
 #include "MeshChecks.h"
 
 #include <vtkCubeSource.h>
+#include <vtkCylinderSource.h>
 #include <vtkDoubleArray.h>
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
@@ -219,6 +220,46 @@ TEST(TetGenMesher, Labels)
   check.Succeeds();
   EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume / (30 * 24 * 24), 1.0, 0.06);
   EXPECT_GT(mesher->GetOutput()->GetBounds()[0], 22.0);
+}
+
+// Flat faces and straight sides have edges of the target length, too.
+TEST(TetGenMesher, FlatBodies)
+{
+  vtkNew<vtkTetGenMesher> mesher;
+  FailureCheck check(mesher);
+  vtkNew<vtkImageData> volume;
+  volume->SetDimensions(70, 50, 16);
+  volume->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  const int extent[6] = { 4, 65, 4, 45, 4, 11 };
+  for (vtkIdType i = 0; i < volume->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    volume->GetPoint(i, p);
+    const bool inside = p[0] >= extent[0] && p[0] <= extent[1] && p[1] >= extent[2] &&
+      p[1] <= extent[3] && p[2] >= extent[4] && p[2] <= extent[5];
+    volume->GetPointData()->GetScalars()->SetComponent(i, 0, inside ? 1.0 : 0.0);
+  }
+  mesher->SetInputData(volume);
+  mesher->SetBodyModeToLabels();
+  mesher->SetTargetEdgeLength(3.0);
+  check.Succeeds();
+  EXPECT_EQ(mesher->GetNumberOfBodyVoxelsOutside(), 0);
+  Summary summary = Summarize(mesher->GetOutput());
+  VerifySound(summary);
+  EXPECT_NEAR(summary.MeanEdge, 3.0, 0.5);
+  EXPECT_LT(summary.LongestEdge, 3.0 * 3.0);
+
+  vtkNew<vtkCylinderSource> cylinder; // each side is one long face
+  cylinder->SetResolution(200);
+  cylinder->SetRadius(2.0);
+  cylinder->SetHeight(40.0);
+  mesher->SetInputConnection(cylinder->GetOutputPort());
+  mesher->SetTargetEdgeLength(2.0);
+  check.Succeeds();
+  summary = Summarize(mesher->GetOutput());
+  VerifySound(summary);
+  EXPECT_NEAR(summary.Volume / (Pi * 4.0 * 40.0), 1.0, 0.06);
+  EXPECT_LT(summary.LongestEdge, 3.0 * 2.0);
 }
 
 TEST(TetGenMesher, Surfaces)
