@@ -114,7 +114,7 @@ public:
   ///@{
   /**
    * Set/Get whether the isovalue is computed from the volume's histogram by Otsu's method, instead
-   * of set by Isovalue. Default: on.
+   * of set by Isovalue. The padding of CT (less than -1024) and metal do not count. Default: on.
    */
   vtkSetMacro(AutomaticIsovalue, bool);
   vtkGetMacro(AutomaticIsovalue, bool);

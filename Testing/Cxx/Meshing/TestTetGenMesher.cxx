@@ -183,6 +183,38 @@ TEST(TetGenMesher, Bodies)
   EXPECT_NEAR(Summarize(mesher->GetOutput()).Volume / (2.0 / 3 * Pi * 3375.0), 1.0, 0.1);
 }
 
+// CT of a body in air, padded outside of a circle, and with an implant of metal.
+TEST(TetGenMesher, Isovalues)
+{
+  vtkNew<vtkTetGenMesher> mesher;
+  FailureCheck check(mesher);
+  for (const double padding : { -1000.0, -2048.0, -3024.0 })
+  {
+    for (const double metal : { 40.0, 8000.0, 16000.0 })
+    {
+      vtkNew<vtkImageData> volume;
+      volume->SetDimensions(40, 40, 20);
+      volume->AllocateScalars(VTK_SHORT, 1);
+      for (vtkIdType i = 0; i < volume->GetNumberOfPoints(); ++i)
+      {
+        double p[3];
+        volume->GetPoint(i, p);
+        const double distance = std::hypot(p[0] - 19.5, p[1] - 19.5);
+        const double noise = static_cast<double>(i * 7919 % 101) - 50.0;
+        const double value = std::hypot(p[0] - 19.5, p[1] - 15.0) < 2.2 ? metal
+          : distance < 12.0                                             ? 40.0 + noise
+          : distance < 19.5                                             ? -1000.0 + noise
+                                                                        : padding;
+        volume->GetPointData()->GetScalars()->SetComponent(i, 0, value);
+      }
+      mesher->SetInputData(volume);
+      check.Succeeds();
+      EXPECT_TRUE(mesher->GetUsedIsovalue() > -940.0 && mesher->GetUsedIsovalue() < -10.0)
+        << "padding " << padding << ", metal " << metal << ": " << mesher->GetUsedIsovalue();
+    }
+  }
+}
+
 TEST(TetGenMesher, Labels)
 {
   // Two boxes whose labels differ by one, but are equal as doubles.
