@@ -492,13 +492,12 @@ int vtkDeformGeometryFilter::RequestDataObject(
 }
 
 //------------------------------------------------------------------------------
-int vtkDeformGeometryFilter::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
-  vtkMTimeType* mtime)
+int vtkDeformGeometryFilter::ComputePipelineMTime(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
 {
   this->Internals->Execution.Renew(this);
-  return this->Superclass::ComputePipelineMTime(
-    request, input, output, requestFromOutputPort, mtime);
+  *mtime = deformvolume::GetTimeWithParts(this);
+  return 1;
 }
 
 //------------------------------------------------------------------------------

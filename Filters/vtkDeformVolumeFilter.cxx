@@ -5,6 +5,7 @@
 
 #include "DeformationChoice.h"
 #include "Device.h"
+#include "InputUpdate.h"
 #include "VTKThreads.h"
 
 #include "vtkDataObject.h"
@@ -282,14 +283,13 @@ int vtkDeformVolumeFilter::FillInputPortInformation(int port, vtkInformation* in
 }
 
 //------------------------------------------------------------------------------
-int vtkDeformVolumeFilter::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
-  vtkMTimeType* mtime)
+int vtkDeformVolumeFilter::ComputePipelineMTime(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
 {
   this->Internals->MarkModifiedIfBoundsHaveGrown();
   this->Internals->Execution.Renew(this);
-  return this->Superclass::ComputePipelineMTime(
-    request, input, output, requestFromOutputPort, mtime);
+  *mtime = deformvolume::GetTimeWithParts(this);
+  return 1;
 }
 
 //------------------------------------------------------------------------------

@@ -276,13 +276,12 @@ int vtkVolumeEditAlgorithm::RequestData(
 }
 
 //------------------------------------------------------------------------------
-int vtkVolumeEditAlgorithm::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
-  vtkMTimeType* mtime)
+int vtkVolumeEditAlgorithm::ComputePipelineMTime(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
 {
   this->Edits->Execution.Renew(this);
-  return this->Superclass::ComputePipelineMTime(
-    request, input, output, requestFromOutputPort, mtime);
+  *mtime = deformvolume::GetTimeWithParts(this);
+  return 1;
 }
 
 //------------------------------------------------------------------------------

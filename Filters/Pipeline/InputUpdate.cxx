@@ -3,7 +3,9 @@
 
 #include "vtkAlgorithm.h"
 #include "vtkAlgorithmOutput.h"
+#include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkElasticDeformation.h"
@@ -17,6 +19,7 @@
 #include "vtkInformationIntegerVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
+#include "vtkRectilinearGrid.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTrivialProducer.h"
@@ -88,6 +91,20 @@ vtkDataObject* Update(vtkAlgorithm* filter, int port, vtkInformation* request, c
       }
     });
   return source->GetProducer()->GetOutputDataObject(source->GetIndex());
+}
+
+vtkMTimeType GetTimeWithCoordinates(vtkDataObject* data)
+{
+  vtkMTimeType time = data->GetMTime();
+  if (const auto grid = vtkRectilinearGrid::SafeDownCast(data))
+  {
+    for (vtkDataArray* array :
+      { grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates() })
+    {
+      time = std::max(time, array ? array->GetMTime() : 0);
+    }
+  }
+  return time;
 }
 
 // Whether a simulation is upstream of an algorithm, or is the algorithm itself.
@@ -342,6 +359,28 @@ std::pair<const void*, vtkMTimeType> GetWrittenStamp(vtkAlgorithm* filter, int p
   }
   vtkDataObject* data = filter->GetInputDataObject(port, 0);
   return { data, data ? data->vtkObject::GetMTime() : 0 };
+}
+
+vtkMTimeType GetTimeWithParts(vtkAlgorithm* filter)
+{
+  vtkMTimeType time = filter->GetMTime();
+  for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
+  {
+    vtkDataObject* data = IsInMemory(filter, port) ? filter->GetInputDataObject(port, 0) : nullptr;
+    if (const auto composite = vtkCompositeDataSet::SafeDownCast(data))
+    {
+      const auto leaves = vtk::TakeSmartPointer(composite->NewIterator());
+      for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem())
+      {
+        time = std::max(time, GetTimeWithCoordinates(leaves->GetCurrentDataObject()));
+      }
+    }
+    else if (data)
+    {
+      time = std::max(time, GetTimeWithCoordinates(data));
+    }
+  }
+  return time;
 }
 
 std::pair<const void*, vtkMTimeType> GetInputStamp(vtkAlgorithm* filter, int port)

@@ -13,6 +13,7 @@
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkCompositeDataSet.h>
+#include <vtkDeformGeometryFilter.h>
 #include <vtkDoubleArray.h>
 #include <vtkInformation.h>
 #include <vtkMultiBlockDataSet.h>
@@ -616,6 +617,49 @@ TEST(DeformMeshes, MeetingBlocks)
   deformedPoints.Update();
   EXPECT_EQ(
     deformedPoints.Filter->GetNumberOfCoveredVoxels(), expected.Filter->GetNumberOfCoveredVoxels());
+}
+
+// Arrays of blocks and coordinates that are written in place, and marked as modified.
+TEST(DeformMeshes, PartsWrittenInPlace)
+{
+  const auto volume = MakeVolume();
+  const Grid mesh = MakeBentMesh(volume);
+  const auto straight = MakeRectilinearGrid();
+  SetDisplacements(straight, Bend);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, mesh);
+  vtkNew<vtkMultiBlockDataSet> straightBlocks;
+  straightBlocks->SetBlock(1, straight);
+  const struct
+  {
+    vtkDataObject* Shape;
+    vtkDataArray* Written;
+  } cases[] = { { blocks, mesh->GetPointData()->GetVectors() },
+    { blocks, mesh->GetPoints()->GetData() }, { straight, straight->GetYCoordinates() },
+    { straightBlocks, straight->GetZCoordinates() } };
+  for (const auto& [shape, written] : cases)
+  {
+    Deformed tested(volume, shape);
+    vtkNew<vtkDeformGeometryFilter> geometry;
+    geometry->SetInputData(mesh);
+    geometry->SetDeformationData(shape);
+    vtkNew<vtkCarveVolume> carve;
+    carve->SetInputData(volume);
+    carve->SetDeformationData(shape);
+    for (int update = 0; update < 2; ++update)
+    {
+      Deformed fresh(volume, shape);
+      EXPECT_TRUE(AreEqual(tested.Update(), fresh.Update()));
+      for (vtkAlgorithm* filter : std::initializer_list<vtkAlgorithm*>{ geometry, carve })
+      {
+        const vtkMTimeType before = filter->GetOutputDataObject(0)->GetMTime();
+        filter->Update();
+        EXPECT_GT(filter->GetOutputDataObject(0)->GetMTime(), before) << filter->GetClassName();
+      }
+      written->SetComponent(2, 0, written->GetComponent(2, 0) + 0.25);
+      written->Modified();
+    }
+  }
 }
 
 TEST(DeformMeshes, Grids)
