@@ -3,6 +3,7 @@
 // arrays, states between executions, and a vtkDeformVolumeFilter downstream.
 #include "ArrayMaking.h"
 #include "ChainMailTesting.h"
+#include "Extent.h"
 
 #include <vtkDataObject.h>
 #include <vtkDataSetAttributes.h>

@@ -2,6 +2,7 @@
 // Cuts in a chain of filters: one cut after another, cuts of a deformed volume, and the gap of a
 // cut that a deformation opens.
 #include "EditChecks.h"
+#include "Extent.h"
 
 #include "vtkCutVolume.h"
 
