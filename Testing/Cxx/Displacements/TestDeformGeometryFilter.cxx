@@ -445,6 +445,18 @@ TEST(DeformGeometryFilter, Mesh)
 }
 
 //------------------------------------------------------------------------------
+// Whether a point is outside the field of 6 points on each axis from 0 to 10, within the tolerance.
+bool IsBesideField(const glm::dvec3& point)
+{
+  const glm::dvec3 beyond = glm::abs(point - glm::clamp(point, 0.0, 10.0));
+  bool isBeside = false;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    isBeside = isBeside || (beyond[axis] > 0.0 && beyond[axis] < 0.0021);
+  }
+  return isBeside;
+}
+
 // Vectors and normals. The reference is finite differences of positions.
 void TestArraysOf(vtkDataObject* deformation, int mode, bool inverse, bool fieldIsInverse)
 {
@@ -492,6 +504,11 @@ void TestArraysOf(vtkDataObject* deformation, int mode, bool inverse, bool field
     if (!isValid)
     {
       continue;
+    }
+    if (vtkImageData::SafeDownCast(deformation) &&
+      (IsBesideField(positions[i]) || IsBesideField(moved[at])))
+    {
+      continue; // see TestArraysOnTheBorder()
     }
     // Skip points at which the map is not differentiable.
     const glm::dvec3 before = (moved[at] - moved[at + 2]) / step;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // GetChangedExtent() after different updates. Testing/Fuzz checks that partial updates are equal to
 // whole ones, and that nothing changes outside this extent.
+#include "Extent.h"
 #include "FilterTesting.h"
 
 #include <algorithm>
