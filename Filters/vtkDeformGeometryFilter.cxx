@@ -496,7 +496,7 @@ int vtkDeformGeometryFilter::ComputePipelineMTime(
   vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
 {
   this->Internals->Execution.Renew(this);
-  *mtime = deformvolume::GetTimeWithParts(this);
+  *mtime = deformvolume::GetMTimeWithInputs(this);
   return 1;
 }
 

@@ -288,7 +288,7 @@ int vtkDeformVolumeFilter::ComputePipelineMTime(
 {
   this->Internals->MarkModifiedIfBoundsHaveGrown();
   this->Internals->Execution.Renew(this);
-  *mtime = deformvolume::GetTimeWithParts(this);
+  *mtime = deformvolume::GetMTimeWithInputs(this);
   return 1;
 }
 

@@ -117,7 +117,9 @@ public:
    * GetRelativeResidual() of at most 1e-6, or a residual of the size of rounding errors. If 200
    * steps do not suffice, or if the body is so tangled by loads that are far too large that further
    * steps are of no use, a warning says so; in the latter case the next execution starts at rest,
-   * and a new sheet cuts the body at rest.
+   * and a new sheet cuts the body at rest. If tetrahedra are inverted at equilibrium, their nodes
+   * move to the mean of their neighbors and the body is solved once more; the result with less
+   * energy is used.
    * INTERACTIVE: after one or two steps towards equilibrium, for a body that is moved
    * interactively. It ends as soon as GetRelativeResidual() is at most 0.01 if handles have moved,
    * else 0.001. The next execution continues from the last state.

@@ -280,7 +280,7 @@ int vtkVolumeEditAlgorithm::ComputePipelineMTime(
   vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
 {
   this->Edits->Execution.Renew(this);
-  *mtime = deformvolume::GetTimeWithParts(this);
+  *mtime = deformvolume::GetMTimeWithInputs(this);
   return 1;
 }
 

@@ -168,7 +168,7 @@ std::vector<SourceArray> SelectArrays(
     {
       const bool isBits = abstract->GetDataType() == VTK_BIT;
       leftOut.push_back(GetLabel(abstract, i) + " (" + abstract->GetDataTypeAsString() +
-        (isBits ? ", which vtkUnsignedCharArray::DeepCopy() converts)" : ")"));
+        (isBits ? "; copy it into a vtkUnsignedCharArray by DeepCopy())" : ")"));
       continue;
     }
     if (array->GetNumberOfTuples() != volume->GetNumberOfPoints())
@@ -196,7 +196,8 @@ std::vector<SourceArray> SelectArrays(
   {
     throw Error("The volume on input port 0 has no numeric point array, so there is nothing to "
                 "deform. Connect a vtkImageData with point scalars." +
-      (leftOut.empty() ? "" : " Its type cannot be resampled: " + leftOut.front() + "."));
+      (leftOut.empty() ? ""
+                       : " The type of this array cannot be resampled: " + leftOut.front() + "."));
   }
   return arrays;
 }

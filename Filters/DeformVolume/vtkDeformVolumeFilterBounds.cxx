@@ -166,7 +166,7 @@ void vtkDeformVolumeFilter::vtkInternals::MakeLinks(
   this->CheckWithRoom(
     [&]
     {
-      this->State->Device.CheckMemory(voxelGrid, {}, { { 0, -1, 0, -1, 0, -1 } }, 0, mesh,
+      this->State->Device.CheckMemory(voxelGrid, {}, deformvolume::EmptyExtent, 0, mesh,
         this->State->Mapping, mapped, deformvolume::Resampling::Exact);
     });
   this->State->Mapping.Update(mesh.GetMeshAtRest(), mapped, {});

@@ -24,10 +24,11 @@ namespace
 {
 
 constexpr std::size_t NumberOfBins = 512;
-// Hounsfield units. No tissue has less than the first; the isovalue of a body in air is less than
-// the second.
-constexpr double LeastInCT = -1024.0;
-constexpr double LargestOfAir = -200.0;
+// Hounsfield units. No tissue has less than the first. The isovalue of a body in air is less than
+// the second, and that of metal in a body is greater than the third.
+constexpr double LeastTissueInCT = -1024.0;
+constexpr double LargestBodyIsovalue = -200.0;
+constexpr double LeastMetalIsovalue = 1000.0;
 
 struct Block
 {
@@ -121,7 +122,7 @@ std::optional<double> FindBodyThreshold(std::vector<double> means)
   {
     return {};
   }
-  if (whole->Share < largestMetal)
+  if (whole->Share < largestMetal && whole->Value > LeastMetalIsovalue)
   {
     const auto limit = means.end() - 1 - static_cast<std::ptrdiff_t>(largestMetal * means.size());
     std::nth_element(means.begin(), limit, means.end());
@@ -188,13 +189,13 @@ double FindIsovalue(vtkImageData* volume, vtkDataArray* array, double resolution
   }
   double limits[2];
   array->GetFiniteRange(limits, 0);
-  if (limits[0] < LeastInCT)
+  if (limits[0] < LeastTissueInCT)
   {
     // Scanners pad CT outside of a circle with -2000, -2048 or -3024, for instance.
     constexpr double leastShare = 0.01;
     const auto all = static_cast<double>(voxels);
     const std::optional<double> unpadded = FindBodyThreshold(findMeans(limits[0]));
-    if (unpadded && *unpadded > LeastInCT && *unpadded < LargestOfAir &&
+    if (unpadded && *unpadded > LeastTissueInCT && *unpadded < LargestBodyIsovalue &&
       static_cast<double>(voxels) < (1.0 - leastShare) * all)
     {
       return *unpadded;

@@ -92,10 +92,9 @@ void FiniteElementSimulation::Warn(const EquilibriumReport& last)
   if (now.NumberOfInvertedTetrahedra > 0 &&
     (!isInteractive || last.NumberOfInvertedTetrahedra == 0))
   {
-    text
-      << now.NumberOfInvertedTetrahedra
-      << " tetrahedra are inverted (inside out). Move handles and loads in smaller steps, or "
-         "make a better mesh. Reset() brings a body back to rest that stays dented without loads.";
+    text << now.NumberOfInvertedTetrahedra
+         << " tetrahedra are inverted (inside out). Move handles and loads in smaller steps, or "
+            "make a better mesh. If a body stays dented without loads, call Reset().";
     this->Warnings.push_back(text.str());
   }
 }

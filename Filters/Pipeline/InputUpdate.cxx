@@ -361,24 +361,34 @@ std::pair<const void*, vtkMTimeType> GetWrittenStamp(vtkAlgorithm* filter, int p
   return { data, data ? data->vtkObject::GetMTime() : 0 };
 }
 
-vtkMTimeType GetTimeWithParts(vtkAlgorithm* filter)
+namespace
+{
+
+/// The last modification time of data that were set directly on a port, with their blocks and
+/// coordinates; 0 for other inputs.
+vtkMTimeType GetTimeOfData(vtkAlgorithm* filter, int port)
+{
+  vtkDataObject* data = IsInMemory(filter, port) ? filter->GetInputDataObject(port, 0) : nullptr;
+  vtkMTimeType time = data ? GetTimeWithCoordinates(data) : 0;
+  if (const auto composite = vtkCompositeDataSet::SafeDownCast(data))
+  {
+    const auto leaves = vtk::TakeSmartPointer(composite->NewIterator());
+    for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem())
+    {
+      time = std::max(time, GetTimeWithCoordinates(leaves->GetCurrentDataObject()));
+    }
+  }
+  return time;
+}
+
+} // namespace
+
+vtkMTimeType GetMTimeWithInputs(vtkAlgorithm* filter)
 {
   vtkMTimeType time = filter->GetMTime();
   for (int port = 0; port < filter->GetNumberOfInputPorts(); ++port)
   {
-    vtkDataObject* data = IsInMemory(filter, port) ? filter->GetInputDataObject(port, 0) : nullptr;
-    if (const auto composite = vtkCompositeDataSet::SafeDownCast(data))
-    {
-      const auto leaves = vtk::TakeSmartPointer(composite->NewIterator());
-      for (leaves->InitTraversal(); !leaves->IsDoneWithTraversal(); leaves->GoToNextItem())
-      {
-        time = std::max(time, GetTimeWithCoordinates(leaves->GetCurrentDataObject()));
-      }
-    }
-    else if (data)
-    {
-      time = std::max(time, GetTimeWithCoordinates(data));
-    }
+    time = std::max(time, GetTimeOfData(filter, port));
   }
   return time;
 }
@@ -392,7 +402,8 @@ std::pair<const void*, vtkMTimeType> GetInputStamp(vtkAlgorithm* filter, int por
   vtkExecutive* executive = filter->GetInputExecutive(port, 0);
   const auto pipeline = vtkDemandDrivenPipeline::SafeDownCast(executive);
   // The connection identifies an output: a producer may have several.
-  return { filter->GetInputConnection(port, 0), pipeline ? pipeline->GetPipelineMTime() : 0 };
+  const vtkMTimeType made = pipeline ? pipeline->GetPipelineMTime() : 0;
+  return { filter->GetInputConnection(port, 0), std::max(made, GetTimeOfData(filter, port)) };
 }
 
 std::vector<double> GetTimes(vtkInformation* input)

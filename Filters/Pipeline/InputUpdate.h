@@ -62,11 +62,10 @@ bool IsInMemory(vtkAlgorithm* filter, int port);
 /// data object only. Data that a source makes have the time 0: the source marks what it writes.
 std::pair<const void*, vtkMTimeType> GetWrittenStamp(vtkAlgorithm* filter, int port);
 
-/// For ComputePipelineMTime: the last modification time of the filter, and of the data of composite
-/// and rectilinear inputs that were set directly. Those of other inputs are known to the executive.
-/// The time of a composite data set does not include its blocks, and that of a vtkRectilinearGrid
-/// does not include its coordinates.
-vtkMTimeType GetTimeWithParts(vtkAlgorithm* filter);
+/// For ComputePipelineMTime: the last modification time of the filter, and of all input data that
+/// were set directly, with their blocks and coordinates. The time of a composite data set does not
+/// include its blocks, and that of a vtkRectilinearGrid does not include its coordinates.
+vtkMTimeType GetMTimeWithInputs(vtkAlgorithm* filter);
 
 ///@{
 /// For filters that keep data of the last execution. The executive would split composite data into

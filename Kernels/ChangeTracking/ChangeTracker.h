@@ -193,8 +193,9 @@ private:
   std::vector<std::pair<std::size_t, std::uint32_t>> Sections;
   std::vector<Box> Boxes; // valid where Known
   std::vector<unsigned char> Known;
-  bool PlanBoxesKnown =
-    false; // of changed sub-bricks, and of those that may share patches with these
+  // Whether the boxes of changed sub-bricks, and of those that may share patches with these, are
+  // known.
+  bool PlanBoxesKnown = false;
   std::optional<DisplacementBounds> AllBounds; // of all points, possibly wider
   std::vector<Box> LastBoxes;                  // valid where Moved
   std::vector<unsigned char> Moved;

@@ -124,6 +124,11 @@ void VolumeDeformer::CheckMemory(const DeformationSize& size, std::uint64_t held
     [&] { deformvolume::CheckMemory(this->Impl->Device, this->Impl->Budget, size, heldBytes); });
 }
 
+bool VolumeDeformer::HasVoxelGrid() const
+{
+  return this->Impl->All != nullptr;
+}
+
 void VolumeDeformer::SetVoxelGrid(
   const VoxelGrid& voxelGrid, std::size_t bytesPerVoxel, bool withLinks)
 {

@@ -72,6 +72,8 @@ public:
   /// divided into chunks. MeshRasterization does not support volumes in several chunks.
   void SetVoxelGrid(
     const VoxelGrid& voxelGrid, std::size_t bytesPerVoxel = 16, bool withLinks = true);
+  /// Whether a grid is set. After a failure of the device, there is none.
+  bool HasVoxelGrid() const;
   /// Set the arrays of the volume, in the order of DeformRequest::Outputs. The types and numbers of
   /// components select the kernels that are compiled.
   void SetArrays(const std::vector<VolumeArray>& arrays);

@@ -207,7 +207,7 @@ DeformReport VolumeDeformer::Internals::Parts::Resample(
   const DeformRequest& request, std::uint64_t spare)
 {
   this->Exact.Start();
-  // Update the bridges before planning, which depends on all masks.
+  // Update the resampled mask before planning, which depends on all masks.
   this->Incremental.ChangeMask(this->Source.UpdateResampledMask(), true);
   DeformReport report;
   report.NumberOfBricks = static_cast<std::int64_t>(this->Volume.GetBricks().GetNumberOfBricks());

@@ -45,7 +45,7 @@ BoundaryDependencies FindBoundaryDependencies(
       const int begin = vertices[2 * axis];
       // The box is one cell larger than the piece on each side: nodes are rounded, and a cell
       // beside those that the piece moves may be crossed by the boundary, too. If the piece
-      // changes, ChangeTracker::IsInside() must be false for all of these cells.
+      // changes, ChangeTracker::IsChangeInterior() must be false for all of these cells.
       near[2 * axis] = getIndex(static_cast<int>(axis), std::floor(rest.first - begin) - 1.0);
       near[2 * axis + 1] = getIndex(static_cast<int>(axis), std::floor(rest.second - begin) + 1.0);
       const auto indices = getEnds(piece.Weights, axis);

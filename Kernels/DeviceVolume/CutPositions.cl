@@ -196,7 +196,8 @@ static int3 WholeRestOf(const Mapping* m, int3 at, const KernelParameters* p)
 {
   const Rest rest = RestOf(m, at.x, at.y, at.z, p);
 #if HAS_TURNED_AXES
-  // Three fractions, each below 1, add up to less than 3, so their sum is rounded and not dropped.
+  // A fraction is the sum of three products, each below one step. It can reach several steps, so it is rounded and
+  // not left out.
   return rest.Whole.xyz + convert_int3_rte(rest.Fraction.xyz);
 #else
   return rest.Whole.xyz;

@@ -37,9 +37,9 @@ std::vector<Extent> DeviceMasks::SetActive(const unsigned char* active, const Po
 {
   std::vector<Extent> changes = this->Active.Set(this->Context, this->Queue, this->Size,
     this->Chunks, active, DEFORMVOLUME_ALL_TETRAHEDRA, written);
-  if (this->Bridges.IsOn())
+  if (this->Resampled.IsOn())
   {
-    this->Bridges.ChangeCells(changes);
+    this->Resampled.ChangeCells(changes);
     // BoundaryCells uses the mask of crossed cells directly.
     return this->HasBoundary() ? changes : std::vector<Extent>();
   }
@@ -72,16 +72,16 @@ std::vector<Extent> DeviceMasks::SetCut(
     this->Bricks.Halo = BrickGrid::HaloOfCuts; // never reset, since another cut may follow
   }
   this->States.ChangeSources(changes);
-  this->Bridges.ChangeVertices(changes);
+  this->Resampled.ChangeVertices(changes);
   return changes;
 }
 
 void DeviceMasks::SetCoincidentNodes(const std::vector<std::int32_t>& numbers)
 {
   this->Queue.finish(); // no command may use the buffers that are released
-  const bool had = this->Bridges.HasCoincidentNodes();
-  this->Bridges.SetCoincidentNodes(this->Context, this->Queue, numbers);
-  if (had != this->Bridges.HasCoincidentNodes())
+  const bool had = this->Resampled.HasCoincidentNodes();
+  this->Resampled.SetCoincidentNodes(this->Context, this->Queue, numbers);
+  if (had != this->Resampled.HasCoincidentNodes())
   {
     this->States.Invalidate();
     for (VolumeChunk& chunk : this->Chunks)
@@ -99,7 +99,7 @@ void DeviceMasks::SetBoundary(const MeshBoundary& boundary)
   }
   this->Queue.finish(); // no command may use the buffers that are released
   this->States.Invalidate();
-  this->Bridges.SetBoundary(!boundary.IsEmpty());
+  this->Resampled.SetBoundary(!boundary.IsEmpty());
   const std::int64_t layer = static_cast<std::int64_t>(this->Size[0] - 1) * (this->Size[1] - 1);
   for (VolumeChunk& chunk : this->Chunks)
   {

@@ -52,18 +52,18 @@ public:
   /// Whether there is any mask, apart from a smooth cut.
   bool HasAny() const { return this->HasActive() || this->HasBlanked() || this->HasDistances(); }
   /// Whether kernels need a mask of active tetrahedra: one that is set, or ResampledMask.
-  bool HasActive() const { return this->HasGivenActive() || this->Bridges.IsOn(); }
+  bool HasActive() const { return this->HasGivenActive() || this->Resampled.IsOn(); }
   bool HasGivenActive() const { return this->Active.HasBuffers(); }
   bool HasBlanked() const { return this->Blanked.HasBuffers(); }
   bool HasDistances() const { return this->Distances.HasBuffers(); }
   bool HasCut() const { return this->Cut.IsOn(); }
-  bool HasBoundary() const { return this->Bridges.HasBoundary(); }
+  bool HasBoundary() const { return this->Resampled.HasBoundary(); }
   ///@{
   /// Returns the mask of a chunk as an argument of kernels. other: any buffer, which replaces a
   /// missing mask: not all drivers accept a null pointer.
   const cl::Buffer& GetActive(const VolumeChunk& chunk, const cl::Buffer& other) const
   {
-    return this->Bridges.IsOn() ? chunk.ResampledTetrahedra : this->GetGivenActive(chunk, other);
+    return this->Resampled.IsOn() ? chunk.ResampledTetrahedra : this->GetGivenActive(chunk, other);
   }
   const cl::Buffer& GetGivenActive(const VolumeChunk& chunk, const cl::Buffer& other) const
   {
@@ -80,8 +80,8 @@ public:
   ///@}
   DeviceCut& GetCut() { return this->Cut; }
   const DeviceCut& GetCut() const { return this->Cut; }
-  ResampledMask& GetResampledMask() { return this->Bridges; }
-  const ResampledMask& GetResampledMask() const { return this->Bridges; }
+  ResampledMask& GetResampledMask() { return this->Resampled; }
+  const ResampledMask& GetResampledMask() const { return this->Resampled; }
 
 private:
   OpenCLContext& Context;
@@ -96,7 +96,7 @@ private:
   DeviceMask Active{ DeviceMask::Kind::ActiveTetrahedra };
   DeviceMask Distances{ DeviceMask::Kind::BoundaryDistances };
   DeviceCut Cut;
-  ResampledMask Bridges;
+  ResampledMask Resampled;
 };
 
 } // namespace deformvolume

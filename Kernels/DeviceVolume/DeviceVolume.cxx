@@ -114,9 +114,9 @@ void DeviceVolume::SetBoundary(const MeshBoundary& boundary, bool isField)
 std::vector<Extent> DeviceVolume::UpdateResampledMask(
   MappingKind mapping, const cl::Buffer& tetrahedra, const MappingSetter& set)
 {
-  ResampledMask& bridges = this->Masks.GetResampledMask();
+  ResampledMask& mask = this->Masks.GetResampledMask();
   std::vector<Extent> changes;
-  if (bridges.IsCurrent())
+  if (mask.IsCurrent())
   {
     return changes;
   }
@@ -126,13 +126,13 @@ std::vector<Extent> DeviceVolume::UpdateResampledMask(
     GetResampledMaskProgram(this->Context, mapping, cut.IsOn(), this->HasTurnedAxes());
   for (VolumeChunk& chunk : this->Chunks)
   {
-    bridges.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
+    mask.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
       { program, set, this->HasRuns() ? this->Mapping.GetRecords().GetOwners() : other, tetrahedra,
         this->Masks.GetGivenActive(chunk, other), this->Masks.HasGivenActive(), other,
         cut.IsOn() ? cut.GetRows() : other, cut.IsOn() ? cut.GetVertices() : other },
       changes);
   }
-  bridges.Finish();
+  mask.Finish();
   this->States.ChangeCells(changes);
   return changes;
 }

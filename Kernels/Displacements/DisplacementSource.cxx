@@ -65,7 +65,7 @@ DisplacementSource::DisplacementSource(
   , Tracker(tracker)
   , Nodes(device, tracker)
   , FieldVectors(device, tracker)
-  , Reading(device)
+  , Converter(device)
 {
 }
 
@@ -144,7 +144,7 @@ std::vector<Extent> DisplacementSource::UpdateResampledMask()
 void DisplacementSource::SetNodeDisplacements(
   const float* displacements, const PointRanges* changes, bool areChecked)
 {
-  this->Reading.Forget();
+  this->Converter.Forget();
   this->SendNodes(displacements, changes, areChecked);
 }
 
@@ -154,10 +154,11 @@ void DisplacementSource::SetNodeDisplacements(
   DisplacementField field;
   field.ToDisplacement = toDisplacement;
   const std::optional<PointRanges> changes =
-    this->Reading.Begin(vectors, field, this->NumberOfNodes);
-  if (!this->Reading.CanConvert(field))
+    this->Converter.Begin(vectors, field, this->NumberOfNodes);
+  if (!this->Converter.CanConvert(field))
   {
-    this->SendNodes(this->Reading.GetDisplacements(changes), changes ? &*changes : nullptr, false);
+    this->SendNodes(
+      this->Converter.GetDisplacements(changes), changes ? &*changes : nullptr, false);
     return;
   }
   if (this->NodesSet && this->DeviceIsCurrent && changes && changes->empty())
@@ -165,7 +166,7 @@ void DisplacementSource::SetNodeDisplacements(
     return;
   }
   this->NodesSet = false;
-  this->Reading.Convert(this->Nodes.AllocateForKernel(this->MaxNumberOfNodes), "node");
+  this->Converter.Convert(this->Nodes.AllocateForKernel(this->MaxNumberOfNodes), "node");
   this->NodesSet = true;
   this->DeviceIsCurrent = true;
   this->Volume.GetRecords().Invalidate();
@@ -190,9 +191,9 @@ void DisplacementSource::SendNodes(
 void DisplacementSource::SetField(const DisplacementField& field, const PointRanges* changes)
 {
   if (static_cast<std::size_t>(GetNumberOfPoints(field)) < VectorConverter::MinPoints ||
-    !this->Reading.CanConvert(field))
+    !this->Converter.CanConvert(field))
   {
-    this->Reading.Forget();
+    this->Converter.Forget();
     this->SetFieldOnHost(field, changes);
     return;
   }
@@ -203,7 +204,7 @@ void DisplacementSource::SetField(const DisplacementField& field, const PointRan
       const std::array<std::size_t, 2> range = partly
         ? GetHull(*validChanges, this->NumberOfNodes)
         : std::array<std::size_t, 2>{ { 0, this->NumberOfNodes } };
-      this->Reading.Convert(field, range, displacements, "point");
+      this->Converter.Convert(field, range, displacements, "point");
     });
   this->DeviceIsCurrent = true;
 }
@@ -212,10 +213,10 @@ void DisplacementSource::SetField(
   const DisplacementField& field, const std::shared_ptr<DeviceVectors>& vectors)
 {
   const auto points = static_cast<std::size_t>(GetNumberOfPoints(field));
-  const std::optional<PointRanges> changes = this->Reading.Begin(vectors, field, points);
-  if (!this->Reading.CanConvert(field))
+  const std::optional<PointRanges> changes = this->Converter.Begin(vectors, field, points);
+  if (!this->Converter.CanConvert(field))
   {
-    this->Reading.Check(changes, "point"); // vectors that are read in place are not checked later
+    this->Converter.Check(changes, "point"); // vectors that are read in place are not checked later
     DisplacementField read = field;
     read.Vectors = vectors->Read();
     read.Owner = vectors;
@@ -224,7 +225,7 @@ void DisplacementSource::SetField(
   }
   this->ConvertFieldOnDevice(field, changes ? &*changes : nullptr,
     [this](const cl::Buffer& displacements, bool)
-    { this->Reading.Convert(displacements, "point"); });
+    { this->Converter.Convert(displacements, "point"); });
 }
 
 void DisplacementSource::ConvertFieldOnDevice(const DisplacementField& field,
@@ -475,7 +476,7 @@ void DisplacementSource::Forget()
   this->Volume.ForgetMesh();
   this->ForgetNodes();
   this->ForgetField();
-  this->Reading.Forget();
+  this->Converter.Forget();
   this->Tracker.InvalidateMapping();
 }
 
@@ -572,7 +573,7 @@ void DisplacementSource::WithDisplacements(
 
 std::uint64_t DisplacementSource::GetMemory() const
 {
-  return this->Reading.GetMemory() +
+  return this->Converter.GetMemory() +
     deformvolume::GetMemory(this->Tetrahedra, this->Nodes.Get(), this->FieldVectors.Get());
 }
 

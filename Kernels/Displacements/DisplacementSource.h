@@ -166,8 +166,8 @@ private:
   cl::Buffer Tetrahedra; // nodes of the tetrahedra, times DEFORMVOLUME_NODE_STRIDE
   std::size_t NumberOfTetrahedra = 0;
   std::size_t NumberOfNodes = 0;
-  std::size_t MaxNumberOfNodes =
-    0; // largest number of nodes since SetMesh(), and size of the buffers
+  // The largest number of nodes since SetMesh(), and the size of the buffers.
+  std::size_t MaxNumberOfNodes = 0;
   DisplacementBuffer Nodes;
   bool NodesSet = false;
 
@@ -177,7 +177,7 @@ private:
   DisplacementField FieldInPlace; // has an owner if the kernels read its vectors in place
   cl::Buffer VectorsInPlace;      // uses the memory of these vectors
 
-  VectorConverter Reading;
+  VectorConverter Converter;
   bool IsConverted = false; // whether a kernel has written the displacements of the field
   mutable std::vector<DisplacementBounds> BoundsOfSubBricks; // if converted; empty: not known
   bool DeviceIsCurrent = false; // whether the device has the displacements of the last call

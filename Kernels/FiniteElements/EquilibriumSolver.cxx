@@ -144,6 +144,8 @@ void EquilibriumSolver::SetMaterialModel(MaterialModel model)
 void EquilibriumSolver::SetDisplacements(const std::vector<glm::dvec3>& displacements)
 {
   this->Last.Displacements = displacements;
+  this->RigidPieces.clear();
+  this->LastingDents.clear();
   this->HasStalled = false;
   this->Forget();
 }
@@ -450,9 +452,10 @@ void EquilibriumSolver::UseHeldPieces(const EquilibriumProblem& problem)
 void EquilibriumSolver::MoveFrozenPieces(
   const EquilibriumProblem& problem, const EquilibriumReport& report, State& state) const
 {
-  if (report.NumberOfFrozenPieces > report.NumberOfFollowingPieces)
+  const std::vector<bool> isFree = FindFreePieces(problem.Supports);
+  if (report.NumberOfFrozenPieces > report.NumberOfFollowingPieces && isFree != this->RigidPieces)
   {
-    MakeFreePiecesRigid(this->Body, this->Pieces, problem.Supports, state.Displacements);
+    MakePiecesRigid(this->Body, this->Pieces, isFree, state.Displacements);
   }
   if (report.NumberOfFollowingPieces == 0)
   {
@@ -518,19 +521,21 @@ void EquilibriumSolver::RemoveDents(AbortCheck& abortCheck, const EquilibriumPro
 {
   const std::vector<unsigned char> isInverted =
     FindInvertedSplits(abortCheck, this->Body, state.Displacements);
+  if (std::find(isInverted.begin(), isInverted.end(), 1) == isInverted.end() ||
+    isInverted == this->LastingDents)
+  {
+    return;
+  }
   std::vector<unsigned char> isChosen(problem.IsFree.size(), 0);
   for (std::size_t t = 0; t < isInverted.size(); ++t)
   {
     this->Body.ForNodes(
       t, [&](std::int32_t node) { isChosen[static_cast<std::size_t>(node)] |= isInverted[t]; });
   }
-  if (std::find(isChosen.begin(), isChosen.end(), 1) == isChosen.end())
-  {
-    return;
-  }
   State other;
   this->MoveToNeighbors(abortCheck, problem, isChosen, state, other);
-  if (!std::isfinite(other.Potential))
+  if (!std::isfinite(other.Potential) ||
+    !std::isfinite(FindResiduals(problem, this->Sliding, other.Forces).Largest))
   {
     return;
   }
@@ -546,6 +551,8 @@ void EquilibriumSolver::RemoveDents(AbortCheck& abortCheck, const EquilibriumPro
   report.NewtonSteps = after.NewtonSteps;
   report.LinearIterations = after.LinearIterations;
   this->HasTangent = false;
+  this->ClampedSteps = 0;
+  this->LastingDents = isInverted;
 }
 
 EquilibriumReport EquilibriumSolver::FindEquilibrium(
@@ -566,7 +573,10 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   }
   this->RightHandSide.resize(problem.IsFree.size());
   State state = this->Last;
-  state.Displacements = this->GetStart();
+  if (this->HasStalled)
+  {
+    state.Displacements = this->GetStart();
+  }
   if (this->HasForces)
   {
     this->FindPotential(abortCheck, problem, state);
@@ -615,6 +625,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
     FindInvertedSplits(abortCheck, this->Body, state.Displacements);
   report.NumberOfInvertedTetrahedra = std::count(isInverted.begin(), isInverted.end(), 1);
   std::swap(this->Last, state);
+  this->RigidPieces = FindFreePieces(problem.Supports);
   this->HasForces = true;
   this->HasLookedForDents = looksForDents;
   this->HasStalled = hasStalled;

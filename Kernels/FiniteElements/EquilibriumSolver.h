@@ -118,8 +118,13 @@ private:
   // The state after the last call. Its forces are still valid if HasForces.
   State Last;
   bool HasForces = false;
-  // The last call ended with RemoveDents, or without need of it.
+  // The free pieces of the last call, which have their shape at rest.
+  std::vector<bool> RigidPieces;
+  // The last call found an equilibrium in the mode Converged: RemoveDents has nothing new to find
+  // until the body moves.
   bool HasLookedForDents = false;
+  // The inverted tetrahedra that RemoveDents has last failed to remove, one byte per tetrahedron.
+  std::vector<unsigned char> LastingDents;
   // The last call gave up with inverted tetrahedra. The next one starts at rest.
   bool HasStalled = false;
 };

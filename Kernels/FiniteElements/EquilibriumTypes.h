@@ -79,7 +79,7 @@ struct EquilibriumReport
   /// The nodes of a tetrahedron of the first frozen piece, for messages; -1 if no piece is frozen.
   Tetrahedron FrozenNodes{ { -1, -1, -1, -1 } };
   /// The number of frozen pieces that moved like rigid bodies with their supporting nodes. The
-  /// other frozen pieces did not move, but have their shape at rest (MakeFreePiecesRigid).
+  /// other frozen pieces did not move, but have their shape at rest (MakePiecesRigid).
   std::int32_t NumberOfFollowingPieces = 0;
   /// The number of tetrahedra that are partly inverted: one of the twelve linear tetrahedra into
   /// which vtkDeformVolumeFilter splits each of them is inverted.

@@ -7,7 +7,6 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
-#include <numeric>
 #include <type_traits>
 
 namespace deformvolume

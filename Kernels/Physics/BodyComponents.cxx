@@ -96,7 +96,7 @@ public:
   // those of points that lie on a line up to rounding.
   bool Holds() const
   {
-    constexpr double leastReach = 0.1;
+    constexpr double leastShare = 0.1; // of the extent of the points
     if (this->Points.size() < 6)
     {
       return false;
@@ -110,13 +110,17 @@ public:
     Eigen::Matrix<double, 6, Eigen::Dynamic> motions(6, columns);
     motions.topRows<3>() =
       axes.transpose() * Eigen::Map<const Eigen::Matrix3Xd>(&this->Normals[0].x, 3, columns);
-    const double reach = points.colwise().norm().maxCoeff();
+    const double extent = points.colwise().norm().maxCoeff();
+    if (!(extent > 0.0))
+    {
+      return false;
+    }
     for (int axis = 0; axis < 3; ++axis)
     {
       const auto y = points.row((axis + 1) % 3).array();
       const auto z = points.row((axis + 2) % 3).array();
       const double scale =
-        std::max((y.square() + z.square()).sqrt().maxCoeff(), leastReach * reach);
+        std::max((y.square() + z.square()).sqrt().maxCoeff(), leastShare * extent);
       motions.row(3 + axis) =
         (y * motions.row((axis + 2) % 3).array() - z * motions.row((axis + 1) % 3).array()) / scale;
     }
@@ -362,8 +366,7 @@ void MoveFollowing(const ElasticBody& body, const BodyComponents& pieces,
   }
 }
 
-void MakeFreePiecesRigid(const ElasticBody& body, const BodyComponents& pieces,
-  const ComponentSupports& supports, std::vector<glm::dvec3>& displacements)
+std::vector<bool> FindFreePieces(const ComponentSupports& supports)
 {
   std::vector<bool> isFree(supports.IsHeld);
   isFree.flip();
@@ -371,6 +374,12 @@ void MakeFreePiecesRigid(const ElasticBody& body, const BodyComponents& pieces,
   {
     isFree[static_cast<std::size_t>(follower.Piece)] = false;
   }
+  return isFree;
+}
+
+void MakePiecesRigid(const ElasticBody& body, const BodyComponents& pieces,
+  const std::vector<bool>& isFree, std::vector<glm::dvec3>& displacements)
+{
   DisjointSets<std::int32_t> sets(isFree.size());
   for (const auto& [node, piece] : pieces.SharedNodes)
   {
@@ -389,6 +398,10 @@ void MakeFreePiecesRigid(const ElasticBody& body, const BodyComponents& pieces,
   constexpr double rounding = 1e-9;
   for (const std::vector<std::size_t>& nodes : nodesOfSets)
   {
+    if (nodes.empty())
+    {
+      continue;
+    }
     const auto number = static_cast<Eigen::Index>(nodes.size());
     Eigen::Matrix3Xd rest(3, number);
     Eigen::Matrix3Xd moved(3, number);
@@ -397,10 +410,6 @@ void MakeFreePiecesRigid(const ElasticBody& body, const BodyComponents& pieces,
       const std::size_t node = nodes[static_cast<std::size_t>(i)];
       rest.col(i) = Eigen::Map<const Eigen::Vector3d>(&body.Points[node].x);
       moved.col(i) = rest.col(i) + Eigen::Map<const Eigen::Vector3d>(&displacements[node].x);
-    }
-    if (number == 0)
-    {
-      continue;
     }
     const Eigen::Matrix4d motion = Eigen::umeyama(rest, moved, false);
     const Eigen::Matrix3Xd rigid =

@@ -36,8 +36,8 @@ struct BodyComponents
   /// The number of pieces.
   std::int32_t NumberOfPieces = 0;
 };
-/// Finds the pieces of a body. abortCheck: checks for an abort. Callers outside
-/// the engine pass null.
+/// Finds the pieces of a body. abortCheck: checks for an abort. Callers outside the engine pass
+/// null.
 DEFORMVOLUME_EXPORT BodyComponents FindBodyComponents(
   const ElasticBody& body, AbortCheck* abortCheck = nullptr);
 
@@ -79,10 +79,13 @@ DEFORMVOLUME_EXPORT void MoveFollowing(const ElasticBody& body, const BodyCompon
   const std::vector<FollowingPiece>& following, std::vector<unsigned char>& isSettled,
   std::vector<glm::dvec3>& displacements);
 
-/// Gives the pieces that are neither held nor following their shape at rest again, each at the
-/// place that fits its displacements best. Pieces that share nodes move together.
-DEFORMVOLUME_EXPORT void MakeFreePiecesRigid(const ElasticBody& body, const BodyComponents& pieces,
-  const ComponentSupports& supports, std::vector<glm::dvec3>& displacements);
+/// Returns for each piece whether it is free: neither held nor following others.
+DEFORMVOLUME_EXPORT std::vector<bool> FindFreePieces(const ComponentSupports& supports);
+
+/// Gives free pieces their shape at rest again, each at the place that fits its displacements best.
+/// Pieces that share nodes are fitted together. Sliding nodes may leave their planes.
+DEFORMVOLUME_EXPORT void MakePiecesRigid(const ElasticBody& body, const BodyComponents& pieces,
+  const std::vector<bool>& isFree, std::vector<glm::dvec3>& displacements);
 
 } // namespace deformvolume
 

@@ -16,7 +16,7 @@
 // The host defines before this text, in addition to the macros of Resampling.cl:
 //   ROWS_ARE_GLOBAL      1 if ROW_MEMORY (PacketVertices.cl) is __global, else 0
 
-// Removes the cells of a packet that have a value that IS_SPECIAL from Fit and Some, so that ResampleCell takes them.
+// Removes the cells of a packet that have a value that IS_SPECIAL from Simple and WithCandidates, so that ResampleCell takes them.
 // The values are tested again because a flag of a row is for eight vertices, and depends on where the mapped part of
 // the row begins and ends.
 static COLD void ExcludeSpecials(PacketCandidates* c)

@@ -46,7 +46,7 @@ typedef struct
 #endif
 
 // Every second cell of a row, from X on. Side: 1 if the vertices of even x come after those of odd x. Parity: of
-// x + y + z. Border: whether a vertex may not be interior. Apart: whether a vertex may have different positions
+// x + y + z. Border: whether a vertex may not be interior. Split: whether a vertex may have different positions
 // for the two sides of a smooth cut.
 typedef struct
 {

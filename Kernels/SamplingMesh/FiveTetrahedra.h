@@ -41,6 +41,7 @@ __constant uchar Tetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
 #else
 namespace deformvolume
 {
+/// The vertices of the five tetrahedra of a cell.
 inline constexpr int FiveTetrahedra[5][4] = DEFORMVOLUME_FIVE_TETRAHEDRA;
 }
 #endif

@@ -6,7 +6,7 @@
 #include "WorldBoxes.h"
 
 #include <algorithm>
-#include <optional>
+#include <memory>
 
 namespace deformvolume
 {
@@ -50,7 +50,7 @@ void DeviceSession::Send(const std::function<void()>& send)
 void DeviceSession::SetVoxelGrid(
   const VoxelGrid& voxelGrid, const std::vector<VolumeArray>& arrays, Resampling method)
 {
-  if (!this->Known)
+  if (!this->Known || !this->Deformer.HasVoxelGrid())
   {
     this->Forget();
   }
@@ -236,6 +236,7 @@ void DeviceSession::SetMesh(const IndexDeformation& deformation, MappingCache& m
   {
     this->Send([&] { this->SendConnectivity(deformation, mapping.GetMapping()); });
   }
+  this->Sent = Contents::None; // until the nodes are sent
   this->SentConnectivity = mesh.ConnectivityVersion;
   if (!volume.Outside.AreExtrapolated())
   {

@@ -21,12 +21,17 @@ namespace deformvolume
 /// The masks of a volume; see VolumeDeformer. Null: no mask of this kind.
 struct WorldMasks
 {
+  ///@{
+  /// See VolumeDeformer::SetBlanked(), SetActiveTetrahedra() and SetBoundaryDistances().
   const unsigned char* Blanked = nullptr;
   const unsigned char* ActiveTetrahedra = nullptr;
   const float* BoundaryDistances = nullptr;
-  /// A smooth cut. Set both arrays or none.
+  ///@}
+  ///@{
+  /// A smooth cut (VolumeDeformer::SetCut()). Set both arrays or none.
   const unsigned char* CutTetrahedra = nullptr;
   const float* CutDistances = nullptr;
+  ///@}
   /// The bits of Blanked that hide a voxel.
   unsigned char BlankedBits = 255;
   ///@{
@@ -70,11 +75,15 @@ public:
     const MappedVolume& volume, Resampling method, bool openSplits,
     const std::function<bool(double)>& progress);
 
+  /// Makes the output; see VolumeDeformer.
   DeformReport Deform(const DeformRequest& request);
 
+  /// Bytes on the device.
   std::uint64_t GetDeviceMemory() const { return this->Deformer.GetDeviceMemory(); }
+  /// Frees the memory of the device. The next calls send all data again.
   void ReleaseMemory();
 
+  /// Number of calls of SetArrays() that sent the arrays.
   std::int64_t GetNumberOfVolumeUploads() const { return this->NumberOfVolumeUploads; }
 
   /// The arrays and masks of the volume may have changed, although their stamps have not.

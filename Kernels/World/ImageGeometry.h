@@ -22,7 +22,7 @@ namespace deformvolume
 struct DEFORMVOLUME_EXPORT ImageGeometry
 {
   /// Structured indices of the points.
-  Extent PointExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent PointExtent = EmptyExtent;
   /// World coordinates of the index (0, 0, 0).
   glm::dvec3 Origin{ 0.0 };
   /// The distance of neighboring points on each axis, in world units.

@@ -35,6 +35,7 @@ class DEFORMVOLUME_EXPORT IndexDeformation
 public:
   virtual ~IndexDeformation() = default;
 
+  /// Whether the deformation is a field, and not a mesh.
   bool IsField() const { return this->Field; }
   /// Whether the deformation is a field from the output to the volume at rest.
   bool IsInverseField() const { return this->Field && this->Inverse; }

@@ -23,7 +23,7 @@ struct MappedVolume
   ImageGeometry Whole;
   /// The voxels to map: all voxels or, if voxels outside the mesh are discarded, a part with whole
   /// rows.
-  Extent Part{ { 0, -1, 0, -1, 0, -1 } };
+  Extent Part = EmptyExtent;
   /// The treatment of voxels outside the mesh.
   OutsideVoxels Outside;
 

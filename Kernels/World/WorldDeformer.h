@@ -58,7 +58,9 @@ struct WorldArray : VolumeArray
 /// the whole output. Incremental: if the next request has the same memory, this memory must still
 /// contain the output of this call; not with RestPositions, Jacobians, FoldCounts or densities. See
 /// WorldArray::IsDensity for the types of Outputs. FoldCounts: 1 for covered voxels where nothing
-/// overlaps. WorldDeformer sets the other members of DeformRequest.
+/// overlaps. WorldDeformer sets Method and WholeOutputExtent. Leave MayStayOnDevice, HeldRevisions,
+/// OutputRevision, LastOutputs and LastCoverage at their defaults. Progress is called only in the
+/// thread that called Deform(); if it returns false, Deform() throws Aborted.
 struct WorldRequest : DeformRequest
 {
   /// Whether all arrays are resampled as if they were categorical.
@@ -233,7 +235,7 @@ private:
   // The memory of the last output, if it can be updated incrementally.
   std::vector<void*> LastOutputs;
   signed char* LastCoverage = nullptr;
-  Extent LastExtent{ { 0, -1, 0, -1, 0, -1 } };
+  Extent LastExtent = EmptyExtent;
 };
 
 } // namespace deformvolume

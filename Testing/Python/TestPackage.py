@@ -147,6 +147,7 @@ def test_misuse():
         (ValueError, "reference", lambda: dv.deform(volume, mesh, reference=dv.Grid((2, 2, 2), affine), padding=1)),
         (dv.Error, "", lambda: dv.deform(volume, mesh, device="no such device")),
         (ValueError, "no volume", lambda: DeformVolume()._prepare()),
+        (AttributeError, "vtkDeformVolumeFilter", lambda: DeformVolume().SetSamplingFactor(2)),
     ):
         expect(kind, text, call)
     # The package works after errors.
@@ -161,7 +162,12 @@ def test_pipelines():
     compare("nearest", image, mesh, Interpolation=2)
     compare("bounds", image, mesh, OutputBoundsMode=1)
     compare("reference", image, mesh, reference=make_reference())
-    compare("extras", image, mesh, GenerateRestPositions=True, GenerateJacobian=True, GenerateFoldCount=True)
+    # A mesh that folds.
+    folded = vtkUnstructuredGrid()
+    folded.DeepCopy(mesh)
+    bend(folded, 3.0)
+    extras = compare("extras", image, folded, GenerateRestPositions=True, GenerateJacobian=True, GenerateFoldCount=True)
+    assert vtk_to_numpy(extras.GetPointData().GetArray("FoldCount")).max() > 1
     # A mesh in the middle of the volume.
     small = vtkUnstructuredGrid()
     small.DeepCopy(mesh)

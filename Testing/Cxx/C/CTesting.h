@@ -171,10 +171,8 @@ public:
 
   /// The names of the arrays that are densities. Set them before SetVolume().
   std::set<std::string> Densities;
-  /// Whether Deform() requests rest positions and Jacobians, fold counts, and an incremental
-  /// update.
+  /// Whether Deform() requests rest positions and Jacobians, and an incremental update.
   bool WithExtra = false;
-  bool WithFolds = false;
   bool IsIncremental = false;
   std::int32_t Interpolation = DV_LINEAR;
 
@@ -212,11 +210,6 @@ public:
       request.jacobian = this->Jacobian.data();
       request.extra_background = this->Background;
     }
-    if (this->WithFolds)
-    {
-      this->FoldCount.resize(voxels);
-      request.fold_count = this->FoldCount.data();
-    }
     this->Report.struct_size = sizeof(this->Report);
     Check(dv_deform(this->Deformer, &request, &this->Report));
   }
@@ -252,7 +245,6 @@ public:
     EXPECT_TRUE(AreBits(this->Coverage, wanted, "vtkValidPointMask"));
     EXPECT_TRUE(!this->WithExtra || AreBits(this->RestPositions, wanted, "RestPosition"));
     EXPECT_TRUE(!this->WithExtra || AreBits(this->Jacobian, wanted, "Jacobian"));
-    EXPECT_TRUE(!this->WithFolds || AreBits(this->FoldCount, wanted, "FoldCount"));
     EXPECT_EQ(this->Report.number_of_covered_voxels, deformed.Filter->GetNumberOfCoveredVoxels());
     EXPECT_GT(this->Report.number_of_covered_voxels, 100);
     EXPECT_EQ(
@@ -278,7 +270,6 @@ private:
   std::vector<std::int8_t> Coverage;
   std::vector<float> RestPositions;
   std::vector<float> Jacobian;
-  std::vector<std::uint32_t> FoldCount;
 };
 
 inline glm::dvec3 Bend(const glm::dvec3& p)

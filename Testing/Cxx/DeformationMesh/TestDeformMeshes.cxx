@@ -660,6 +660,17 @@ TEST(DeformMeshes, PartsWrittenInPlace)
       written->Modified();
     }
   }
+  // The output extent changes in the same update.
+  Deformed tested(volume, blocks);
+  tested.Update();
+  vtkDataArray* displacements = mesh->GetPointData()->GetVectors();
+  for (const double step : { -4.0, 4.0 })
+  {
+    displacements->SetComponent(0, 0, displacements->GetComponent(0, 0) + step);
+    displacements->Modified();
+    Deformed fresh(volume, blocks);
+    EXPECT_TRUE(AreEqual(tested.Expect(""), fresh.Update())) << step;
+  }
 }
 
 TEST(DeformMeshes, Grids)

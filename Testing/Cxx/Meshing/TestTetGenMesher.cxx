@@ -213,6 +213,24 @@ TEST(TetGenMesher, Isovalues)
         << "padding " << padding << ", metal " << metal << ": " << mesher->GetUsedIsovalue();
     }
   }
+  // A body that is as small a part of the volume as metal can be.
+  vtkNew<vtkImageData> volume;
+  volume->SetDimensions(40, 40, 20);
+  volume->AllocateScalars(VTK_SHORT, 1);
+  for (vtkIdType i = 0; i < volume->GetNumberOfPoints(); ++i)
+  {
+    double p[3];
+    volume->GetPoint(i, p);
+    const double distance = std::hypot(p[0] - 19.5, p[1] - 19.5);
+    volume->GetPointData()->GetScalars()->SetComponent(i, 0,
+      distance < 4.0      ? 40.0
+        : distance < 19.5 ? -1000.0
+                          : -1024.0);
+  }
+  mesher->SetInputData(volume);
+  check.Succeeds();
+  EXPECT_TRUE(mesher->GetUsedIsovalue() > -940.0 && mesher->GetUsedIsovalue() < -10.0)
+    << mesher->GetUsedIsovalue();
 }
 
 TEST(TetGenMesher, Labels)

@@ -96,7 +96,7 @@ TEST_F(DeformMisuse, Volumes)
   const auto bits = MakeArray<vtkBitArray>("bits", bare->GetNumberOfPoints());
   bare->GetPointData()->SetScalars(bits);
   this->GetFilter()->SetInputData(bare);
-  this->Expect("a volume of bits", "\"bits\" (bit, which vtkUnsignedCharArray");
+  this->Expect("a volume of bits", "\"bits\" (bit; copy it into a vtkUnsignedCharArray");
 
   auto strange = MakeVolume();
   strange->SetSpacing(1.0, 0.0, 1.0);
