@@ -94,7 +94,7 @@ void FiniteElementSimulation::Warn(const EquilibriumReport& last)
   {
     text << now.NumberOfInvertedTetrahedra
          << " tetrahedra are inverted (inside out). Move handles and loads in smaller steps, or "
-            "make a better mesh. If a body stays dented without loads, call Reset().";
+            "make a better mesh. If a body stays dented without loads, reset it.";
     this->Warnings.push_back(text.str());
   }
 }
