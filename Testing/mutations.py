@@ -565,8 +565,6 @@ MUTATIONS = {
         "true", ["Cxx.TestDeformGeometryFilter"]),
     "points-direction": ("Filters/vtkDeformGeometryFilter.cxx", "this->IsInverted = this->Self->Inverse != (isField",
         "this->IsInverted = this->Self->Inverse || (isField", ["Cxx.TestDeformGeometryFilter"]),
-    "failed-extent": ("Filters/DeformVolume/vtkDeformVolumeFilterRequests.cxx",
-                      "if (volume && volume->Has(Pipeline::WHOLE_EXTENT()))", "if (false)", ["Cxx.TestFailedUpdates"]),
     "keep-dropped": ("Kernels/World/DeviceSession.cxx", "        this->HasFadedMesh = false;\n", "",
                      ["Cxx.TestDeformKeep"]),
     "split-places": ("Kernels/World/DeviceSession.cxx", "|| (openSplits && hasSplit)", "", [PIPELINES]),

@@ -59,21 +59,11 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
     catch (const std::exception&)
     {
       // The error is reported when data are requested: a program that requests information may not
-      // have set all inputs and arrays yet. Until then the output has the extent of the volume:
-      // with an empty one, filters downstream request nothing, or complain of the extent.
+      // have set all inputs and arrays yet. Until then the output has an empty extent.
       this->Internals->InformationFailure = std::current_exception();
-      Extent whole = deformvolume::EmptyExtent;
-      vtkInformation* volume = input[0]->GetInformationObject(0);
-      if (volume && volume->Has(Pipeline::WHOLE_EXTENT()))
-      {
-        volume->Get(Pipeline::WHOLE_EXTENT(), whole.data());
-      }
-      if (deformvolume::GetNumberOfPoints(whole) == 0)
-      {
-        whole = deformvolume::EmptyExtent;
-      }
-      outInfo->Set(Pipeline::WHOLE_EXTENT(), whole.data(), 6);
-      outInfo->Set(Pipeline::UPDATE_EXTENT(), deformvolume::EmptyExtent.data(), 6);
+      const int empty[6] = { 0, -1, 0, -1, 0, -1 };
+      outInfo->Set(Pipeline::WHOLE_EXTENT(), empty, 6);
+      outInfo->Set(Pipeline::UPDATE_EXTENT(), empty, 6);
       result = 1;
     }
   }

@@ -11,10 +11,6 @@
 #include "vtkMaterialFromVolume.h"
 #include "vtkTetGenMesher.h"
 
-#include <vtkExtractVOI.h>
-#include <vtkImageConstantPad.h>
-#include <vtkImageGradient.h>
-#include <vtkImageShrink3D.h>
 #include <vtkInformation.h>
 #include <vtkInformationIntegerKey.h>
 #include <vtkLogger.h>
@@ -139,38 +135,6 @@ TEST(FailedUpdates, Messages)
   filter->UpdateExtent(part);
   EXPECT_EQ(display.CountErrors(), 6);
   EXPECT_GT(filter->GetOutput()->GetNumberOfPoints(), 0);
-}
-
-// Image filters downstream request something, so that the error is reported, and is the only one.
-TEST(FailedUpdates, ImageFilters)
-{
-  const auto volume = MakeVolume();
-  const auto mesh = MakeMesh(volume);
-  SetDisplacements(mesh, Shift(1.0, 0.0, 0.0));
-  vtkNew<vtkExtractVOI> part;
-  part->SetVOI(2, 5, 2, 5, 2, 5);
-  vtkNew<vtkImageShrink3D> shrink;
-  shrink->SetShrinkFactors(2, 2, 2);
-  vtkNew<vtkImageConstantPad> pad;
-  pad->SetOutputWholeExtent(-2, 20, -2, 20, -2, 20);
-  vtkNew<vtkImageGradient> gradient;
-  for (vtkImageAlgorithm* consumer :
-    std::initializer_list<vtkImageAlgorithm*>{ part, shrink, pad, gradient })
-  {
-    SCOPED_TRACE(consumer->GetClassName());
-    Deformed deformed(volume, mesh);
-    consumer->SetInputConnection(deformed.Filter->GetOutputPort());
-    const Display display;
-    for (int errors = 0; errors < 3; ++errors)
-    {
-      deformed.Filter->SetDevice(errors == 1 ? "" : "a device that nobody has");
-      consumer->Update();
-      EXPECT_EQ(deformed.TakeErrors(), errors == 1 ? 0 : 1);
-      EXPECT_EQ(HasPart(deformed.LastError, "a device that nobody has"), errors != 1);
-      EXPECT_EQ(display.CountErrors(), 0);
-      EXPECT_TRUE(errors != 1 || consumer->GetOutput()->GetNumberOfPoints() > 0);
-    }
-  }
 }
 
 TEST(FailedUpdates, Devices)
