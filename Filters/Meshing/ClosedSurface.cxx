@@ -217,7 +217,12 @@ vtkSmartPointer<vtkPolyData> Decimate(vtkPolyData* surface, double edgeLength)
   decimation->SetInputData(input);
   decimation->SetTargetReduction(1.0 - wanted / static_cast<double>(split->GetNumberOfPolys()));
   decimation->VolumePreservationOn();
+  // VTK prints a warning for each edge whose equations have no unique solution, and then uses a
+  // point on the edge.
+  const int displaysWarnings = vtkObject::GetGlobalWarningDisplay();
+  vtkObject::GlobalWarningDisplayOff();
   decimation->Update();
+  vtkObject::SetGlobalWarningDisplay(displaysWarnings);
   auto decimated = CleanTriangles(Transform(decimation->GetOutput(), edgeLength, center));
   return IsClosedManifold(decimated) ? decimated : nullptr;
 }
