@@ -40,6 +40,26 @@ vtkIdType CountEdges(vtkPolyData* surface, bool boundary, bool nonManifold)
   return edges->GetOutput()->GetNumberOfLines();
 }
 
+// Returns the polygons of a surface, with its points moved to the results of move(point).
+template <typename Move>
+vtkSmartPointer<vtkPolyData> MovePoints(vtkPolyData* surface, const Move& move)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(surface->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < surface->GetNumberOfPoints(); ++id)
+  {
+    glm::dvec3 point;
+    surface->GetPoint(id, &point.x);
+    point = move(point);
+    points->SetPoint(id, &point.x);
+  }
+  auto result = vtkSmartPointer<vtkPolyData>::New();
+  result->SetPoints(points);
+  result->SetPolys(surface->GetPolys());
+  return result;
+}
+
 // Whether all points lie in one plane: the oriented bounding box is thinner than 1e-6 of its
 // length.
 bool LiesInPlane(vtkPolyData* surface)
@@ -50,47 +70,21 @@ bool LiesInPlane(vtkPolyData* surface)
     return true;
   }
   const double scale = 1.0 / surface->GetLength();
-  const double* const center = surface->GetCenter();
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(surface->GetNumberOfPoints());
-  for (vtkIdType id = 0; id < surface->GetNumberOfPoints(); ++id)
-  {
-    double point[3];
-    surface->GetPoint(id, point);
-    points->SetPoint(id, scale * (point[0] - center[0]), scale * (point[1] - center[1]),
-      scale * (point[2] - center[2]));
-  }
+  const glm::dvec3 center = glm::make_vec3(surface->GetCenter());
+  const auto scaled =
+    MovePoints(surface, [&](const glm::dvec3& point) { return scale * (point - center); });
   double corner[3];
   double axes[3][3]; // the longest first
   double sizes[3];
   vtkNew<vtkOBBTree> tree;
-  tree->ComputeOBB(points, corner, axes[0], axes[1], axes[2], sizes);
+  tree->ComputeOBB(scaled->GetPoints(), corner, axes[0], axes[1], axes[2], sizes);
   return !(vtkMath::Norm(axes[2]) > 1e-6 * vtkMath::Norm(axes[0]));
 }
 
-// Moves points to `factor` times their coordinates plus a shift.
-vtkSmartPointer<vtkPolyData> Transform(vtkPolyData* surface, double factor, const glm::dvec3& shift)
-{
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(surface->GetNumberOfPoints());
-  for (vtkIdType id = 0; id < surface->GetNumberOfPoints(); ++id)
-  {
-    glm::dvec3 point;
-    surface->GetPoint(id, &point.x);
-    point = factor * point + shift;
-    points->SetPoint(id, &point.x);
-  }
-  auto result = vtkSmartPointer<vtkPolyData>::New();
-  result->SetPoints(points);
-  result->SetPolys(surface->GetPolys());
-  return result;
-}
-
 // Makes decimation keep triangles with edges of about the length 1 where the surface is flat or
-// straight. There the quadrics of positions have no error, but those of squared coordinates have:
-// linear interpolation of a square along an edge is wrong by up to a quarter of the squared length.
+// straight. Sets the vectors of the surface. There the quadrics of positions have no error, but
+// those of squared coordinates have: linear interpolation of a square along an edge is wrong by up
+// to a quarter of the squared length.
 void LimitEdges(vtkQuadricDecimation* decimation, vtkPolyData* surface)
 {
   vtkNew<vtkDoubleArray> squares;
@@ -111,8 +105,8 @@ void LimitEdges(vtkQuadricDecimation* decimation, vtkPolyData* surface)
   }
   surface->GetPointData()->SetVectors(squares);
   decimation->AttributeErrorMetricOn();
-  // The filter divides by the range. With less than a quarter flat surfaces, and with more round
-  // surfaces, get longer edges.
+  // The filter divides by the range. A smaller factor than a quarter gives longer edges on flat
+  // surfaces, a greater one on round surfaces.
   decimation->SetVectorsWeight(0.25 * range);
 }
 
@@ -211,7 +205,10 @@ vtkSmartPointer<vtkPolyData> Decimate(vtkPolyData* surface, double edgeLength)
   const auto split = SplitLongEdges(surface, 1.5 * edgeLength);
   // The decimation has absolute tolerances.
   const glm::dvec3 center = glm::make_vec3(split->GetCenter());
-  const auto input = Transform(split, 1.0 / edgeLength, -center / edgeLength);
+  const double scale = 1.0 / edgeLength;
+  const glm::dvec3 shift = -center / edgeLength;
+  const auto input =
+    MovePoints(split, [&](const glm::dvec3& point) { return scale * point + shift; });
   vtkNew<vtkQuadricDecimation> decimation;
   LimitEdges(decimation, input);
   decimation->SetInputData(input);
@@ -223,7 +220,8 @@ vtkSmartPointer<vtkPolyData> Decimate(vtkPolyData* surface, double edgeLength)
   vtkObject::GlobalWarningDisplayOff();
   decimation->Update();
   vtkObject::SetGlobalWarningDisplay(displaysWarnings);
-  auto decimated = CleanTriangles(Transform(decimation->GetOutput(), edgeLength, center));
+  auto decimated = CleanTriangles(MovePoints(
+    decimation->GetOutput(), [&](const glm::dvec3& point) { return edgeLength * point + center; }));
   return IsClosedManifold(decimated) ? decimated : nullptr;
 }
 

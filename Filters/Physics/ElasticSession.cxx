@@ -197,9 +197,12 @@ void ElasticSession::Cut(const WorldSheet& sheet, bool isAtRest)
   {
     std::vector<glm::dvec3> positions = this->Mesh.Body.Points;
     ElasticSimulation::State before = this->Simulation->GetState();
-    for (std::size_t node = 0; node < positions.size() && !isAtRest; ++node)
+    if (!isAtRest)
     {
-      positions[node] += before.Displacements[node];
+      for (std::size_t node = 0; node < positions.size(); ++node)
+      {
+        positions[node] += before.Displacements[node];
+      }
     }
     std::vector<glm::dvec3> points = sheet.Points;
     for (glm::dvec3& point : points)

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace deformvolume
 {
@@ -450,14 +451,14 @@ void EquilibriumSolver::UseHeldPieces(const EquilibriumProblem& problem)
 }
 
 void EquilibriumSolver::MoveFrozenPieces(
-  const EquilibriumProblem& problem, const EquilibriumReport& report, State& state) const
+  const EquilibriumProblem& problem, const std::vector<bool>& isFree, State& state) const
 {
-  const std::vector<bool> isFree = FindFreePieces(problem.Supports);
-  if (report.NumberOfFrozenPieces > report.NumberOfFollowingPieces && isFree != this->RigidPieces)
+  const bool areAny = std::find(isFree.begin(), isFree.end(), true) != isFree.end();
+  if (areAny && isFree != this->RigidPieces)
   {
     MakePiecesRigid(this->Body, this->Pieces, isFree, state.Displacements);
   }
-  if (report.NumberOfFollowingPieces == 0)
+  if (problem.Supports.Following.empty())
   {
     return;
   }
@@ -619,13 +620,14 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
     this->HasTangent = false;
   }
   this->IsTangentOld = true;
-  this->MoveFrozenPieces(problem, report, state);
+  std::vector<bool> isFree = FindFreePieces(problem.Supports);
+  this->MoveFrozenPieces(problem, isFree, state);
   report.StrainEnergy = state.Sums.Energy;
   const std::vector<unsigned char> isInverted =
     FindInvertedSplits(abortCheck, this->Body, state.Displacements);
   report.NumberOfInvertedTetrahedra = std::count(isInverted.begin(), isInverted.end(), 1);
   std::swap(this->Last, state);
-  this->RigidPieces = FindFreePieces(problem.Supports);
+  this->RigidPieces = std::move(isFree);
   this->HasForces = true;
   this->HasLookedForDents = looksForDents;
   this->HasStalled = hasStalled;

@@ -53,10 +53,10 @@ private:
   // displacements.
   void Forget();
   void UseHeldPieces(const EquilibriumProblem& problem);
-  // Moves pieces that are not held with their supporting nodes. Those without such nodes get their
-  // shape at rest.
+  // Moves pieces that are not held with their supporting nodes. Free pieces, which have no such
+  // nodes, get their shape at rest.
   void MoveFrozenPieces(
-    const EquilibriumProblem& problem, const EquilibriumReport& report, State& state) const;
+    const EquilibriumProblem& problem, const std::vector<bool>& isFree, State& state) const;
   EquilibriumReport FindEquilibrium(
     AbortCheck& abortCheck, const EquilibriumRequest& request, const EquilibriumProblem& problem);
   void Evaluate(AbortCheck& abortCheck, const EquilibriumProblem& problem, State& state) const;

@@ -9,6 +9,9 @@
 #include "vtkLatticeTetrahedraSource.h"
 #include "vtkMassSpringDeformation.h"
 
+#include <vtkCellArray.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 
@@ -66,6 +69,21 @@ inline vtkSmartPointer<vtkUnstructuredGrid> MakeBar(double unit)
 // Finite elements have mid-side nodes.
 template <typename Filter>
 constexpr bool HasMidSides = std::is_same_v<Filter, vtkFiniteElementDeformation>;
+
+// Makes a triangle that crosses a body in meters, in a plane of constant z.
+inline vtkSmartPointer<vtkPolyData> MakeHorizontalSheet(double z)
+{
+  auto sheet = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(-1.0, -1.0, z);
+  points->InsertNextPoint(1.0, -1.0, z);
+  points->InsertNextPoint(0.0, 2.0, z);
+  vtkNew<vtkCellArray> triangles;
+  triangles->InsertNextCell({ 0, 1, 2 });
+  sheet->SetPoints(points);
+  sheet->SetPolys(triangles);
+  return sheet;
+}
 
 // The number of nodes of MakeBar(). With mid-side nodes these are the points of a lattice twice as
 // fine, except the centers of the cells.

@@ -16,6 +16,7 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <sstream>
+#include <string>
 
 using namespace meshChecks;
 
@@ -188,49 +189,46 @@ TEST(TetGenMesher, Isovalues)
 {
   vtkNew<vtkTetGenMesher> mesher;
   FailureCheck check(mesher);
+  // getValue(i, x, y): the value of voxel i, at x, y from the axis of the body.
+  const auto checkIsovalue = [&](const std::string& name, const auto& getValue)
+  {
+    vtkNew<vtkImageData> volume;
+    volume->SetDimensions(40, 40, 20);
+    volume->AllocateScalars(VTK_SHORT, 1);
+    for (vtkIdType i = 0; i < volume->GetNumberOfPoints(); ++i)
+    {
+      double p[3];
+      volume->GetPoint(i, p);
+      volume->GetPointData()->GetScalars()->SetComponent(
+        i, 0, getValue(i, p[0] - 19.5, p[1] - 19.5));
+    }
+    mesher->SetInputData(volume);
+    check.Succeeds();
+    EXPECT_TRUE(mesher->GetUsedIsovalue() > -940.0 && mesher->GetUsedIsovalue() < -10.0)
+      << name << ": " << mesher->GetUsedIsovalue();
+  };
   for (const double padding : { -1000.0, -2048.0, -3024.0 })
   {
     for (const double metal : { 40.0, 8000.0, 16000.0 })
     {
-      vtkNew<vtkImageData> volume;
-      volume->SetDimensions(40, 40, 20);
-      volume->AllocateScalars(VTK_SHORT, 1);
-      for (vtkIdType i = 0; i < volume->GetNumberOfPoints(); ++i)
-      {
-        double p[3];
-        volume->GetPoint(i, p);
-        const double distance = std::hypot(p[0] - 19.5, p[1] - 19.5);
-        const double noise = static_cast<double>(i * 7919 % 101) - 50.0;
-        const double value = std::hypot(p[0] - 19.5, p[1] - 15.0) < 2.2 ? metal
-          : distance < 12.0                                             ? 40.0 + noise
-          : distance < 19.5                                             ? -1000.0 + noise
-                                                                        : padding;
-        volume->GetPointData()->GetScalars()->SetComponent(i, 0, value);
-      }
-      mesher->SetInputData(volume);
-      check.Succeeds();
-      EXPECT_TRUE(mesher->GetUsedIsovalue() > -940.0 && mesher->GetUsedIsovalue() < -10.0)
-        << "padding " << padding << ", metal " << metal << ": " << mesher->GetUsedIsovalue();
+      checkIsovalue("padding " + std::to_string(padding) + ", metal " + std::to_string(metal),
+        [&](vtkIdType i, double x, double y)
+        {
+          const double distance = std::hypot(x, y);
+          const double noise = static_cast<double>(i * 7919 % 101) - 50.0;
+          return std::hypot(x, y + 4.5) < 2.2 ? metal
+            : distance < 12.0                 ? 40.0 + noise
+            : distance < 19.5                 ? -1000.0 + noise
+                                              : padding;
+        });
     }
   }
-  // A body that is as small a part of the volume as metal can be.
-  vtkNew<vtkImageData> volume;
-  volume->SetDimensions(40, 40, 20);
-  volume->AllocateScalars(VTK_SHORT, 1);
-  for (vtkIdType i = 0; i < volume->GetNumberOfPoints(); ++i)
-  {
-    double p[3];
-    volume->GetPoint(i, p);
-    const double distance = std::hypot(p[0] - 19.5, p[1] - 19.5);
-    volume->GetPointData()->GetScalars()->SetComponent(i, 0,
-      distance < 4.0      ? 40.0
-        : distance < 19.5 ? -1000.0
-                          : -1024.0);
-  }
-  mesher->SetInputData(volume);
-  check.Succeeds();
-  EXPECT_TRUE(mesher->GetUsedIsovalue() > -940.0 && mesher->GetUsedIsovalue() < -10.0)
-    << mesher->GetUsedIsovalue();
+  checkIsovalue("a body that is as small a part of the volume as metal can be",
+    [](vtkIdType, double x, double y)
+    {
+      const double distance = std::hypot(x, y);
+      return distance < 4.0 ? 40.0 : distance < 19.5 ? -1000.0 : -1024.0;
+    });
 }
 
 TEST(TetGenMesher, Labels)

@@ -113,15 +113,7 @@ void CheckCut(const std::function<void(Simulated<Filter>&)>& settle)
 TEST(ElasticCuts, Pieces)
 {
   vtkSmartPointer<vtkUnstructuredGrid> bar = MakeBar(1.0);
-  vtkNew<vtkPolyData> sheet;
-  vtkNew<vtkPoints> points;
-  points->InsertNextPoint(-1.0, -1.0, 0.0151);
-  points->InsertNextPoint(1.0, -1.0, 0.0151);
-  points->InsertNextPoint(0.0, 2.0, 0.0151);
-  vtkNew<vtkCellArray> triangles;
-  triangles->InsertNextCell({ 0, 1, 2 });
-  sheet->SetPoints(points);
-  sheet->SetPolys(triangles);
+  const auto sheet = MakeHorizontalSheet(0.0151);
   Simulated<vtkMassSpringDeformation> springs(bar);
   springs.Filter->SetSheetData(sheet);
   springs.Filter->SetGravity(0.0, 0.0, 9.81);

@@ -330,15 +330,7 @@ TEST(ElasticDeformation, CorrectionsAfterGivingUp)
     elements.Filter->Update();
     elements.Observer->Clear();
   };
-  vtkNew<vtkPolyData> sheet;
-  vtkNew<vtkPoints> points;
-  points->InsertNextPoint(-1.0, -1.0, 0.051);
-  points->InsertNextPoint(1.0, -1.0, 0.051);
-  points->InsertNextPoint(0.0, 2.0, 0.051);
-  vtkNew<vtkCellArray> triangles;
-  triangles->InsertNextCell({ 0, 1, 2 });
-  sheet->SetPoints(points);
-  sheet->SetPolys(triangles);
+  const auto sheet = MakeHorizontalSheet(0.051);
   Simulated<vtkFiniteElementDeformation> expected(rod);
   solve(expected, 1e4, 9.81);
   const auto wanted = expected.Copy();

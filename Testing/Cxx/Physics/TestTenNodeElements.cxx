@@ -514,20 +514,6 @@ TEST(TenNodeElements, FiltersBehind)
   EXPECT_TRUE(largest > 5e-4 && worst < 1e-9); // displacements are floats
 }
 
-vtkSmartPointer<vtkPolyData> MakeSheet(double z)
-{
-  auto sheet = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->InsertNextPoint(-1.0, -1.0, z);
-  points->InsertNextPoint(1.0, -1.0, z);
-  points->InsertNextPoint(0.0, 2.0, z);
-  vtkNew<vtkCellArray> triangles;
-  triangles->InsertNextCell({ 0, 1, 2 });
-  sheet->SetPoints(points);
-  sheet->SetPolys(triangles);
-  return sheet;
-}
-
 // A cut through the whole bar: the two sides share no nodes, and new nodes have the array values of
 // the nodes that they were split from. After an undo the bar is the same as before, to the last
 // bit.
@@ -550,7 +536,7 @@ TEST(TenNodeElements, Cut)
     vtkNew<vtkUnstructuredGrid> whole;
     whole->DeepCopy(elements.Filter->GetOutput());
     EXPECT_TRUE(elements.Filter->GetIsConverged());
-    elements.Filter->SetSheetData(MakeSheet(0.0151));
+    elements.Filter->SetSheetData(MakeHorizontalSheet(0.0151));
     EXPECT_EQ(elements.TryUpdate(), "");
     EXPECT_EQ(elements.Filter->GetNumberOfFrozenPieces(), 0);
     vtkUnstructuredGrid* cut = elements.Filter->GetOutput();
