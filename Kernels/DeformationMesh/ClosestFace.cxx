@@ -13,9 +13,14 @@ namespace deformvolume
 namespace
 {
 
-// Relative rounding error by which the squared distance to a triangle may be less than the squared
-// distance to its bounding box.
+// Relative rounding error of squared distances to a triangle and to its bounding box.
 constexpr double RoundingMargin = 1e-9;
+
+double GetSquaredDistance(const glm::dvec3& point, const IndexBounds& box)
+{
+  const glm::dvec3 offset = point - glm::clamp(point, box.Min, box.Max);
+  return glm::dot(offset, offset);
+}
 
 // Returns the barycentric weights of the point of a triangle that is closest to another point. The
 // signs of dot products decide whether the closest point is a corner, on an edge or inside.
@@ -108,15 +113,28 @@ ClosestFace::Result ClosestFace::Find(const glm::dvec3& point, std::int32_t near
   {
     this->Look(point, nearby, best);
   }
-  this->Tree.VisitNearest(
-    [&](const IndexBounds& box)
-    {
-      const glm::dvec3 offset = point - glm::clamp(point, box.Min, box.Max);
-      return glm::dot(offset, offset);
-    },
+  this->Tree.VisitNearest([&](const IndexBounds& box) { return GetSquaredDistance(point, box); },
     [&](double squared) { return squared > best.SquaredDistance * (1.0 + RoundingMargin); },
     [&](std::size_t face) { this->Look(point, static_cast<std::int32_t>(face), best); });
   return best;
+}
+
+ClosestFace::Result ClosestFace::FindFirst(const glm::dvec3& point) const
+{
+  Result first = this->Find(point);
+  const double most = first.SquaredDistance * (1.0 + RoundingMargin);
+  this->Tree.VisitNearest([&](const IndexBounds& box) { return GetSquaredDistance(point, box); },
+    [&](double squared) { return squared > most; },
+    [&](std::size_t face)
+    {
+      Result other;
+      this->Look(point, static_cast<std::int32_t>(face), other);
+      if (other.SquaredDistance <= most && other.Face < first.Face)
+      {
+        first = other;
+      }
+    });
+  return first;
 }
 
 } // namespace deformvolume

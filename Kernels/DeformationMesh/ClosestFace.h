@@ -15,8 +15,7 @@
 namespace deformvolume
 {
 
-/// Finds the triangle that is closest to a point. Find() is
-/// thread-safe.
+/// Finds the triangle that is closest to a point. Thread-safe.
 class ClosestFace
 {
 public:
@@ -36,6 +35,9 @@ public:
   /// are no triangles. nearby: a triangle that may be close, or -1. It makes the search faster and
   /// does not change the result.
   Result Find(const glm::dvec3& point, std::int32_t nearby = -1) const;
+  /// As Find(), but distances that differ only by rounding count as the same. Beyond the edge
+  /// between two triangles, Find() takes either of them, from point to point.
+  Result FindFirst(const glm::dvec3& point) const;
 
 private:
   void Look(const glm::dvec3& point, std::int32_t face, Result& best) const;

@@ -329,7 +329,9 @@ bool MeshPointMap::Map(const glm::dvec3& point, Image& image) const
     {
       return false;
     }
-    const ClosestFace::Result closest = inside.Boundary->Find(point);
+    // The maps of two faces differ beyond the edge between them; displacements that fade do not.
+    const ClosestFace::Result closest =
+      this->Outside.AreKept() ? inside.Boundary->Find(point) : inside.Boundary->FindFirst(point);
     if (closest.Face < 0)
     {
       return false; // there are no faces, or squared distances overflow

@@ -203,6 +203,31 @@ TEST(FadedLinks, Search)
   }
 }
 
+// Beyond the edge between two faces, FindFirst() always finds the first one.
+TEST(FadedLinks, SearchBeyondAnEdge)
+{
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> coordinate(-10.0, 10.0);
+  int seconds = 0;
+  for (int i = 0; i < 500; ++i)
+  {
+    const auto next = [&]
+    { return glm::dvec3(coordinate(random), coordinate(random), coordinate(random)); };
+    const glm::dvec3 start = next();
+    const glm::dvec3 edge = next();
+    const glm::dvec3 out = glm::normalize(glm::cross(edge, next()));
+    const glm::dvec3 up = glm::normalize(glm::cross(edge, out));
+    const ClosestFace search({ { { start, start + edge, start - 20.0 * out } },
+      { { start + edge, start, start - 20.0 * up } } });
+    const glm::dvec3 point = start + 0.3 * edge + 3.0 * out + 4.0 * up;
+    seconds += search.Find(point).Face;
+    const ClosestFace::Result found = search.FindFirst(point);
+    EXPECT_EQ(found.Face, 0);
+    EXPECT_NEAR(found.SquaredDistance, 25.0, 1e-9);
+  }
+  EXPECT_GT(seconds, 0); // rounding decides
+}
+
 TEST(FadedLinks, AgainstAllFaces)
 {
   std::mt19937 random(5);
