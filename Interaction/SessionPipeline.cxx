@@ -7,6 +7,7 @@
 
 #include "vtkCallbackCommand.h"
 #include "vtkCarveVolume.h"
+#include "vtkCellData.h"
 #include "vtkChainMailDeformation.h"
 #include "vtkCutVolume.h"
 #include "vtkDataArray.h"
@@ -18,6 +19,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStructuredData.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <glm/common.hpp>
@@ -307,6 +309,44 @@ void SessionPipeline::BeginGrab(double handle, const glm::dvec3& position)
   }
 }
 
+bool SessionPipeline::HasTissue(const glm::dvec3& rest) const
+{
+  vtkImageData* volume = this->CarveFilter->GetOutput();
+  vtkDataArray* active = volume->GetCellData()->GetArray("ActiveTetrahedra");
+  if (!active)
+  {
+    return true;
+  }
+  glm::dvec3 index;
+  volume->TransformPhysicalPointToContinuousIndex(&rest.x, &index.x);
+  const int* extent = volume->GetExtent();
+  // The cells that begin at most one voxel away.
+  int first[3];
+  int last[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int lowest = extent[2 * axis];
+    const int highest = extent[2 * axis + 1] - 1;
+    first[axis] = std::clamp(static_cast<int>(std::floor(index[axis])) - 1, lowest, highest);
+    last[axis] = std::clamp(static_cast<int>(std::floor(index[axis])) + 1, lowest, highest);
+  }
+  int cell[3];
+  for (cell[2] = first[2]; cell[2] <= last[2]; ++cell[2])
+  {
+    for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1])
+    {
+      for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0])
+      {
+        if (active->GetComponent(vtkStructuredData::ComputeCellIdForExtent(extent, cell), 0) != 0.0)
+        {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
 void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
 {
   for (const Action& action : this->Done)
@@ -320,10 +360,24 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   Action drag;
   drag.Handle = handle;
   drag.IsGrabbed = drag.IsHeld = true;
-  const bool isPossible = HasPossibleIndex(this->Volume, position);
-  // Not the sampling of the caller: a replay must find the same position.
-  drag.Rest = isPossible ? this->FindRestPosition(position, {}) : position;
-  if (!isPossible || !MoveIntoVolume(this->Volume, drag.Rest))
+  bool isPossible = HasPossibleIndex(this->Volume, position);
+  if (isPossible)
+  {
+    // Not the sampling of the caller: a replay must find the same position.
+    Sampling sampling;
+    sampling.CategoricalArrays = this->CategoricalArrays;
+    drag.Rest = this->FindRestPosition(position, sampling);
+    isPossible = MoveIntoVolume(this->Volume, drag.Rest) && this->HasTissue(drag.Rest);
+  }
+  if (isPossible)
+  {
+    // The handle begins at the deformed position of Rest, so that nothing moves before MoveGrab().
+    drag.Now = drag.LastPossible =
+      this->Positions.FindDeformedPosition(this->GetDeformation(), drag.Rest);
+    // In a gap, the nearest tissue is farther away than the voxels of tissue that is visible.
+    isPossible = glm::distance(drag.Now, position) <= 2.0 * GetLargestVoxelSize(this->Volume);
+  }
+  if (!isPossible)
   {
     throw std::runtime_error("The grabbed position " + FormatShort(&position.x) +
       " is outside the deformed volume. Grab a position within it.");
@@ -333,9 +387,6 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
     drag.Nodes = this->FindNodes(drag.Rest);
     this->CheckNodes(drag);
   }
-  // The handle begins at the deformed position of Rest, so that nothing moves before MoveGrab().
-  drag.Now = drag.LastPossible =
-    this->Positions.FindDeformedPosition(this->GetDeformation(), drag.Rest);
   this->AddActionWithState(drag);
 }
 

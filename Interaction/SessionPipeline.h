@@ -62,6 +62,7 @@ public:
     int Factor = 1;
     int Padding = 8;
     double BackgroundValue = 0.0;
+    std::set<std::string> CategoricalArrays;
   };
   /// Returns the deformed volume. Throws std::runtime_error if a filter fails.
   vtkImageData* Resample(const Sampling& sampling);
@@ -135,6 +136,8 @@ private:
 
   void BeginGrab(double handle, const glm::dvec3& position);
   void TryBeginGrab(double handle, const glm::dvec3& position);
+  // Whether a voxel next to a rest position has tissue that was not carved out.
+  bool HasTissue(const glm::dvec3& rest) const;
   // Throws if a handle holds no node, or only those of other handles.
   void CheckNodes(const Action& drag) const;
   void RestoreLastPossible();
@@ -190,6 +193,7 @@ private:
   vtkNew<vtkMassSpringDeformation> MassSpring;
   vtkNew<vtkFiniteElementDeformation> Elements;
   vtkNew<vtkDeformVolumeFilter> Resampler;
+  std::set<std::string> CategoricalArrays; // of Resampler
   PositionSearch Positions;
   vtkNew<vtkCallbackCommand> ErrorObserver;
   vtkNew<vtkCallbackCommand> WarningObserver;

@@ -487,7 +487,23 @@ bool SessionPipeline::UpdateMotion()
 
 vtkImageData* SessionPipeline::Resample(const Sampling& sampling, bool hasRestPositions)
 {
-  this->Resampler->SetSamplingFactor(sampling.Factor);
+  int factor = sampling.Factor;
+  const int* dimensions = this->Volume->GetDimensions();
+  // On each axis, at least two voxels of the coarse volume remain, whatever the first index is.
+  while (factor > 1 && *std::min_element(dimensions, dimensions + 3) < 2 * factor)
+  {
+    factor /= 2;
+  }
+  this->Resampler->SetSamplingFactor(factor);
+  if (this->CategoricalArrays != sampling.CategoricalArrays)
+  {
+    this->CategoricalArrays = sampling.CategoricalArrays;
+    this->Resampler->ClearCategoricalArrays();
+    for (const std::string& name : this->CategoricalArrays)
+    {
+      this->Resampler->AddCategoricalArray(name.c_str());
+    }
+  }
   this->Resampler->SetPadding(sampling.Padding);
   this->Resampler->SetBackgroundValue(sampling.BackgroundValue);
   this->Resampler->SetGenerateRestPositions(hasRestPositions);

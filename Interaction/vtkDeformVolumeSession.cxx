@@ -378,6 +378,23 @@ double vtkDeformVolumeSession::GetBackgroundValue()
   return this->Internals->Sampling.BackgroundValue;
 }
 
+void vtkDeformVolumeSession::AddCategoricalArray(const std::string& name)
+{
+  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
+  if (this->Internals->Sampling.CategoricalArrays.insert(name).second)
+  {
+    this->Modified();
+  }
+}
+
+void vtkDeformVolumeSession::ClearCategoricalArrays()
+{
+  if (this->Internals->ChangeSampling(&Sampling::CategoricalArrays, {}))
+  {
+    this->Modified();
+  }
+}
+
 bool vtkDeformVolumeSession::Update()
 {
   if (!this->CheckInputs())
@@ -447,6 +464,22 @@ vtkImageData* vtkDeformVolumeSession::TakeOutput()
     output->Register(nullptr);
   }
   return output;
+}
+
+vtkDataSet* vtkDeformVolumeSession::CopyDeformation()
+{
+  if (!this->CheckInputs())
+  {
+    return nullptr;
+  }
+  const vtkInternals::Access access(*this->Internals);
+  vtkDataSet* deformation = this->Internals->Pipeline.GetDeformation();
+  vtkDataSet* copy = deformation ? deformation->NewInstance() : nullptr;
+  if (copy)
+  {
+    copy->DeepCopy(deformation);
+  }
+  return copy;
 }
 
 bool vtkDeformVolumeSession::Probe(double x, double y, double z)

@@ -30,10 +30,11 @@
  * it, and relaxes. MASS_SPRING and FINITE_ELEMENTS are vtkMassSpringDeformation and
  * vtkFiniteElementDeformation on the mesh of SetInputs(), or else on a vtkLatticeTetrahedraSource
  * whose first layer of nodes is fixed, in millimeters. MASS_SPRING refuses meshes whose cells are
- * not equal cubes. A change of the model ends all grabs, and keeps the handles of HoldGrab(), cuts
- * and carvings. Cuts split meshes along the faces of tetrahedra. Cuts that were made with another
- * model, or that are redone, split the mesh at rest. Carving removes voxels; the mesh of
- * MASS_SPRING and FINITE_ELEMENTS keeps its tetrahedra, and still connects what was carved apart.
+ * not equal cubes. Tissue outside the mesh is not part of their output. A change of the model ends
+ * all grabs, and keeps the handles of HoldGrab(), cuts and carvings. Cuts split meshes along the
+ * faces of tetrahedra. Cuts that were made with another model, or that are redone, split the mesh
+ * at rest. Carving removes voxels; the mesh of MASS_SPRING and FINITE_ELEMENTS keeps its
+ * tetrahedra, and still connects what was carved apart.
  *
  * @par Output:
  * The vtkImageData of vtkDeformVolumeFilter, with the bounds of the volume at rest and Padding.
@@ -43,11 +44,11 @@
  * @par Files:
  * A session is saved as the record of its events, in XML with a version, a checksum, and a hash of
  * the volume and the mesh with their arrays. Loading a session replays the events. On the same
- * device, the result is bitwise equal if Padding, BackgroundValue and MovingSamplingFactor, which
- * files do not contain, are equal; and the same actions can be undone. Files are written under
- * a temporary name in the same folder, and renamed when they are complete. They keep the
- * permissions of the file that they replace. A symbolic link stays; the file it refers to is
- * replaced.
+ * device, the result is bitwise equal if Padding, BackgroundValue, MovingSamplingFactor and the
+ * categorical arrays, which files do not contain, are equal; and the same actions can be undone.
+ * Files are written under a temporary name in the same folder, and renamed when they are complete.
+ * They keep the permissions of the file that they replace. A symbolic link stays; the file it
+ * refers to is replaced.
  *
  * @par Errors:
  * Each error is one vtkErrorMacro, which says what is wrong and what to do, and GetErrorMessage().
@@ -75,6 +76,7 @@
 #include <string>     // for std::string
 #include <vector>     // for std::vector
 
+class vtkDataSet;
 class vtkImageData;
 class vtkPolyData;
 class vtkUnstructuredGrid;
@@ -124,7 +126,7 @@ public:
   /**
    * Grab the tissue at a position, move the handle, and end the grab. BeginGrab() returns the
    * number of the handle, or -1 if there is no volume or a number is not finite; other errors, such
-   * as a position outside the tissue, are reported by the next update. MASS_SPRING and
+   * as a position without tissue, are reported by the next update. MASS_SPRING and
    * FINITE_ELEMENTS hold the nodes within the radius of ChangeHandleRadius() or, if there are none,
    * those of the tetrahedron at the position, whose fixed nodes do not follow. If none of them can
    * move, they hold the nearest node that can. With the model NONE a grab has no effect. Several
@@ -208,7 +210,8 @@ public:
   ///@{
   /**
    * Set/Get the SamplingFactor of vtkDeformVolumeFilter while the body moves: 1, 2 or 4. Other
-   * values are errors and change nothing. At rest, the output has full resolution. Default 1.
+   * values are errors and change nothing. If less than two voxels would remain on an axis, a
+   * smaller factor is used. At rest, the output has full resolution. Default 1.
    */
   void SetMovingSamplingFactor(int factor);
   int GetMovingSamplingFactor();
@@ -233,6 +236,16 @@ public:
    */
   void SetBackgroundValue(double value);
   double GetBackgroundValue();
+  ///@}
+
+  ///@{
+  /**
+   * Add the name of a point array of the volume that holds labels, which are not interpolated; or
+   * remove all names (see vtkDeformVolumeFilter). The next output uses a change. Initially there is
+   * none.
+   */
+  void AddCategoricalArray(const std::string& name);
+  void ClearCategoricalArrays();
   ///@}
 
   /**
@@ -262,6 +275,16 @@ public:
    * so automatically). Reports errors of events.
    */
   VTK_NEWINSTANCE vtkImageData* TakeOutput();
+
+  /**
+   * Get a copy of the deformation after the last update, or null if there is no volume: a
+   * vtkImageData or a vtkUnstructuredGrid, at rest, with the displacements as active vectors. By
+   * it vtkDeformGeometryFilter moves surfaces and landmarks, and vtkDeformVolumeFilter other
+   * volumes. It does not contain cuts and carvings, except that the mesh of MASS_SPRING and
+   * FINITE_ELEMENTS is split by cuts. Waits for the end of a step. The caller must delete it
+   * (Python does so automatically).
+   */
+  VTK_NEWINSTANCE vtkDataSet* CopyDeformation();
 
   ///@{
   /**

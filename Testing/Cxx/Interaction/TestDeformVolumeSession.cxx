@@ -33,6 +33,7 @@
 #include <iterator>
 #include <limits>
 #include <random>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -987,6 +988,98 @@ TEST(DeformVolumeSession, GrabbedTissue)
       one.Object->GetProbedRestPosition(&rest.x);
       EXPECT_LT(glm::distance(rest, glm::dvec3(9.3, 10.1, 12.2)), 1e-4);
     }
+  }
+}
+
+// Holes and gaps have no tissue to grab.
+TEST(DeformVolumeSession, GrabsWithoutTissue)
+{
+  const auto volume = MakeVolume(Box);
+  for (const int model : { Session::CHAIN_MAIL, Session::MASS_SPRING, Session::FINITE_ELEMENTS })
+  {
+    Tested carved(volume);
+    carved.Object->ChangeModel(model);
+    carved.Object->CarveSphere(10, 11, 9, 5.0);
+    carved.Finish();
+    carved.Object->BeginGrab(10, 11, 9);
+    carved.ExpectError("outside the deformed volume");
+    EXPECT_FALSE(carved.Object->Probe(10, 11, 9));
+    carved.Object->BeginGrab(10, 11, 14.5); // beside the hole
+    carved.Step();
+    EXPECT_EQ(carved.TakeError(), "");
+    if (model == Session::FINITE_ELEMENTS)
+    {
+      continue; // its cut follows the coarse lattice, and opens elsewhere
+    }
+
+    Tested cut(volume);
+    cut.Object->ChangeModel(model);
+    cut.Object->ChangeHandleRadius(3.0);
+    cut.Object->ChangeRelaxationSweeps(0);
+    cut.Object->Cut(MakePlane({ 11.4, 13, 14 }, { 0, 60, 0 }, { 0, 0, 24 }));
+    const int left = cut.Object->BeginGrab(8, 12, 16);
+    const int right = cut.Object->BeginGrab(15, 12, 16);
+    cut.Object->MoveGrab(left, 4, 12, 16);
+    cut.Object->MoveGrab(right, 19, 12, 16);
+    cut.Finish(40);
+    EXPECT_FALSE(cut.Object->Probe(11.4, 12, 16));
+    cut.Object->BeginGrab(11.4, 12, 16);
+    cut.ExpectError("outside the deformed volume");
+  }
+}
+
+// Labels are not blended, and the deformation can be used by other filters.
+TEST(DeformVolumeSession, LabelsAndOtherData)
+{
+  const auto volume = MakeVolume(Box);
+  vtkNew<vtkUnsignedCharArray> labels;
+  labels->SetName("Labels");
+  labels->SetNumberOfTuples(volume->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    labels->SetValue(id, volume->GetPoint(id)[0] < 10.0 ? 10 : 50);
+  }
+  volume->GetPointData()->AddArray(labels);
+  for (const int model : { Session::CHAIN_MAIL, Session::FINITE_ELEMENTS })
+  {
+    Tested one(volume);
+    one.Object->AddCategoricalArray("Labels");
+    one.Object->ChangeModel(model);
+    one.Object->ChangeHandleRadius(2.0);
+    one.Object->MoveGrab(one.Object->BeginGrab(10, 11, 9), 13.3, 11.2, 9);
+    const auto output = one.Finish();
+    vtkDataArray* values = output->GetPointData()->GetArray("Labels");
+    std::set<double> found;
+    for (vtkIdType id = 0; id < values->GetNumberOfTuples(); ++id)
+    {
+      found.insert(values->GetComponent(id, 0));
+    }
+    EXPECT_EQ(found, (std::set<double>{ 0.0, 10.0, 50.0 }));
+
+    const auto deformation = vtkSmartPointer<vtkDataSet>::Take(one.Object->CopyDeformation());
+    Deformed wanted(volume, deformation);
+    wanted.Filter->AddCategoricalArray("Labels");
+    wanted.Filter->SetOutputBoundsModeToVolumeBounds();
+    wanted.Filter->SetPadding(8);
+    wanted.Filter->SetBackgroundValue(one.Object->GetBackgroundValue());
+    EXPECT_TRUE(AreEqual(output, wanted.Update()));
+    one.Object->ClearCategoricalArrays();
+    EXPECT_FALSE(AreEqual(one.Finish(), output));
+  }
+}
+
+// A volume of two slices has no coarse volume.
+TEST(DeformVolumeSession, ThinVolumes)
+{
+  for (const int slices : { 2, 3, 4 })
+  {
+    Tested one(MakeVolume({ { 0, 19, 0, 19, 1, slices } }));
+    one.Object->SetMovingSamplingFactor(4);
+    one.Object->ChangeModel(Session::CHAIN_MAIL);
+    one.Object->MoveGrab(one.Object->BeginGrab(10, 10, 1), 13, 10, 1);
+    one.Object->Update();
+    EXPECT_TRUE(one.Step());
+    EXPECT_EQ(one.TakeError(), "");
   }
 }
 
