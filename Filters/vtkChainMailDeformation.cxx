@@ -184,23 +184,16 @@ int vtkChainMailDeformation::RequestInformation(
 int vtkChainMailDeformation::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
 {
-  for (int port = 0; port < 2; ++port)
-  {
-    if (vtkInformation* info = input[port]->GetInformationObject(0))
-    {
-      deformvolume::AskForAll(info);
-    }
-  }
+  deformvolume::AskForAll(input, 0, 2);
   return 1;
 }
 
-int vtkChainMailDeformation::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
-  vtkMTimeType* mtime)
+int vtkChainMailDeformation::ComputePipelineMTime(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
 {
   this->Internals->Execution.Renew(this);
-  return this->Superclass::ComputePipelineMTime(
-    request, input, output, requestFromOutputPort, mtime);
+  *mtime = this->GetMTime();
+  return 1;
 }
 
 int vtkChainMailDeformation::RequestData(

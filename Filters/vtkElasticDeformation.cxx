@@ -181,23 +181,16 @@ int vtkElasticDeformation::RequestInformation(
 int vtkElasticDeformation::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
 {
-  for (int port = 0; port < 3; ++port)
-  {
-    if (vtkInformation* info = input[port]->GetInformationObject(0))
-    {
-      deformvolume::AskForAll(info);
-    }
-  }
+  deformvolume::AskForAll(input, 0, 3);
   return 1;
 }
 
-int vtkElasticDeformation::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
-  vtkMTimeType* mtime)
+int vtkElasticDeformation::ComputePipelineMTime(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
 {
   this->Internals->Execution.Renew(this);
-  return this->Superclass::ComputePipelineMTime(
-    request, input, output, requestFromOutputPort, mtime);
+  *mtime = this->GetMTime();
+  return 1;
 }
 
 int vtkElasticDeformation::RequestData(

@@ -5,6 +5,7 @@
 #include "FiveTetrahedra.h"
 #include "IsAborted.h"
 #include "PieceRequest.h"
+#include "PipelineExecution.h"
 
 #include "vtkCellArray.h"
 #include "vtkDoubleArray.h"
@@ -63,7 +64,7 @@ struct Lattice
     }
   }
 
-  void SetVolume(vtkImageData* volume, const int extent[6], double margin)
+  void SetVolume(vtkImageData* volume, const std::array<int, 6>& extent, double margin)
   {
     const double* spacing = volume->GetSpacing();
     const double* origin = volume->GetOrigin();
@@ -176,108 +177,35 @@ vtkIdType* WriteCell(
   return vertex;
 }
 
-} // namespace
-
-vtkLatticeTetrahedraSource::vtkLatticeTetrahedraSource()
+void CheckNodes(const std::array<int, 3>& nodes)
 {
-  this->SetNumberOfInputPorts(1);
+  if (*std::min_element(nodes.begin(), nodes.end()) < 2)
+  {
+    std::ostringstream text;
+    text << "NumberOfNodes is " << nodes[0] << ", " << nodes[1] << ", " << nodes[2]
+         << ". A lattice needs at least 2 nodes on every axis.";
+    throw Error(text.str());
+  }
 }
 
-int vtkLatticeTetrahedraSource::FillInputPortInformation(int, vtkInformation* info)
+// The whole extent of a volume, so that a piece of the volume gets the same lattice as all of it.
+std::array<int, 6> FindWholeExtent(vtkImageData* volume, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  return 1;
+  std::array<int, 6> extent;
+  volume->GetExtent(extent.data());
+  if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
+  {
+    info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent.data());
+  }
+  return extent;
 }
 
-int vtkLatticeTetrahedraSource::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
-  vtkMTimeType* mtime)
+// Makes the nodes and the tetrahedra of a lattice. Throws Error and Aborted.
+void FillGrid(
+  const Lattice& lattice, bool isMirrored, vtkAlgorithm* algorithm, vtkUnstructuredGrid* output)
 {
-  // The executive regards an output that was not completed as up to date. It would not notice a
-  // change of the modification time in a later request.
-  if (this->Incomplete)
-  {
-    this->Incomplete = false;
-    this->Modified();
-  }
-  return this->Superclass::ComputePipelineMTime(
-    request, inputVector, outputVector, requestFromOutputPort, mtime);
-}
-
-int vtkLatticeTetrahedraSource::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
-{
-  // Request the whole volume, although the lattice depends on no voxel: consumers of one source
-  // share its information, and a smaller request would replace that of another consumer. The source
-  // would then read the volume twice.
-  if (vtkInformation* info = inputVector[0]->GetInformationObject(0))
-  {
-    deformvolume::AskForAll(info);
-  }
-  return 1;
-}
-
-int vtkLatticeTetrahedraSource::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
-  output->Initialize();
-  std::fill_n(this->Dimensions, 3, 0);
-  if (!deformvolume::IsFirstPiece(outputVector))
-  {
-    return 1;
-  }
-  this->Incomplete = true;
-
-  Lattice lattice;
-  std::copy_n(this->NumberOfNodes, 3, lattice.Nodes.begin());
-  double volumeOfCell = 0.0;
-  vtkIdType numberOfTetrahedra = 0;
-  try
-  {
-    if (*std::min_element(lattice.Nodes.begin(), lattice.Nodes.end()) < 2)
-    {
-      std::ostringstream text;
-      text << "NumberOfNodes is " << lattice.Nodes[0] << ", " << lattice.Nodes[1] << ", "
-           << lattice.Nodes[2] << ". A lattice needs at least 2 nodes on every axis.";
-      throw Error(text.str());
-    }
-    if (vtkImageData* volume = vtkImageData::GetData(inputVector[0]))
-    {
-      // The whole extent, so that a piece of the volume gets the same lattice as all of it.
-      vtkInformation* info = inputVector[0]->GetInformationObject(0);
-      int extent[6];
-      volume->GetExtent(extent);
-      if (info->Has(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT()))
-      {
-        info->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
-      }
-      lattice.SetVolume(volume, extent, this->Margin);
-    }
-    else
-    {
-      lattice.SetBounds(this->Bounds, this->Margin);
-    }
-    volumeOfCell = glm::determinant(lattice.Steps);
-    if (volumeOfCell == 0.0 || !std::isfinite(volumeOfCell))
-    {
-      throw Error("The lattice has no volume: its axes lie in one plane, or it is too small or too "
-                  "large for double precision.");
-    }
-    if (this->EqualSpacing)
-    {
-      lattice.MakeCubes();
-    }
-    numberOfTetrahedra = CountTetrahedra(lattice.Nodes);
-  }
-  catch (const Error& error)
-  {
-    vtkErrorMacro(<< error.what());
-    return deformvolume::GetResultOfError(outputVector);
-  }
-
   const std::array<int, 3>& nodes = lattice.Nodes;
+  const vtkIdType numberOfTetrahedra = CountTetrahedra(nodes);
   vtkNew<vtkDoubleArray> coordinates;
   coordinates->SetNumberOfComponents(3);
   coordinates->SetNumberOfTuples(vtkIdType{ nodes[0] } * nodes[1] * nodes[2]);
@@ -295,10 +223,10 @@ int vtkLatticeTetrahedraSource::RequestData(
 
   for (int z = 0; z < nodes[2]; ++z)
   {
-    this->UpdateProgress(static_cast<double>(z) / nodes[2]);
-    if (deformvolume::IsAborted(this))
+    algorithm->UpdateProgress(static_cast<double>(z) / nodes[2]);
+    if (deformvolume::IsAborted(algorithm))
     {
-      return 1;
+      throw deformvolume::Aborted();
     }
     for (int y = 0; y < nodes[1]; ++y)
     {
@@ -310,21 +238,94 @@ int vtkLatticeTetrahedraSource::RequestData(
         *coordinate++ = node.z;
         if (x + 1 < nodes[0] && y + 1 < nodes[1] && z + 1 < nodes[2])
         {
-          vertex = WriteCell(x, y, z, nodes, volumeOfCell < 0.0, vertex);
+          vertex = WriteCell(x, y, z, nodes, isMirrored, vertex);
         }
       }
     }
   }
-
   vtkNew<vtkPoints> points;
   points->SetData(coordinates);
   vtkNew<vtkCellArray> cells;
   cells->SetData(offsets, connectivity);
   output->SetPoints(points);
   output->SetCells(VTK_TETRA, cells);
-  std::copy(nodes.begin(), nodes.end(), this->Dimensions);
-  this->Incomplete = false;
+}
+
+} // namespace
+
+vtkLatticeTetrahedraSource::vtkLatticeTetrahedraSource()
+  : Execution(new deformvolume::PipelineExecution)
+{
+  this->SetNumberOfInputPorts(1);
+}
+
+vtkLatticeTetrahedraSource::~vtkLatticeTetrahedraSource() = default;
+
+int vtkLatticeTetrahedraSource::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   return 1;
+}
+
+int vtkLatticeTetrahedraSource::ComputePipelineMTime(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
+{
+  this->Execution->Renew(this);
+  *mtime = this->GetMTime();
+  return 1;
+}
+
+int vtkLatticeTetrahedraSource::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+{
+  // Request the whole volume, although the lattice depends on no voxel: consumers of one source
+  // share its information, and a smaller request would replace that of another consumer. The source
+  // would then read the volume twice.
+  deformvolume::AskForAll(inputVector, 0, 1);
+  return 1;
+}
+
+int vtkLatticeTetrahedraSource::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
+  output->Initialize();
+  std::fill_n(this->Dimensions, 3, 0);
+  if (!deformvolume::IsFirstPiece(outputVector))
+  {
+    return 1;
+  }
+  const int done =
+    this->Execution->Run(this, "There is not enough memory for the lattice. Use fewer nodes.",
+      [&]
+      {
+        Lattice lattice;
+        std::copy_n(this->NumberOfNodes, 3, lattice.Nodes.begin());
+        CheckNodes(lattice.Nodes);
+        if (vtkImageData* volume = vtkImageData::GetData(inputVector[0]))
+        {
+          lattice.SetVolume(
+            volume, FindWholeExtent(volume, inputVector[0]->GetInformationObject(0)), this->Margin);
+        }
+        else
+        {
+          lattice.SetBounds(this->Bounds, this->Margin);
+        }
+        const double volumeOfCell = glm::determinant(lattice.Steps);
+        if (volumeOfCell == 0.0 || !std::isfinite(volumeOfCell))
+        {
+          throw Error("The lattice has no volume: its axes lie in one plane, or it is too small or "
+                      "too large for double precision.");
+        }
+        if (this->EqualSpacing)
+        {
+          lattice.MakeCubes();
+        }
+        FillGrid(lattice, volumeOfCell < 0.0, this, output);
+        std::copy(lattice.Nodes.begin(), lattice.Nodes.end(), this->Dimensions);
+      });
+  return done ? 1 : deformvolume::GetResultOfError(outputVector);
 }
 
 void vtkLatticeTetrahedraSource::PrintSelf(ostream& os, vtkIndent indent)

@@ -32,6 +32,13 @@
 #include "vtkDeformVolumeModule.h" // for export macro
 #include "vtkUnstructuredGridAlgorithm.h"
 
+#include <memory> // for std::unique_ptr
+
+namespace deformvolume
+{
+class PipelineExecution;
+}
+
 class VTKDEFORMVOLUME_EXPORT vtkLatticeTetrahedraSource : public vtkUnstructuredGridAlgorithm
 {
 public:
@@ -96,7 +103,7 @@ public:
 
 protected:
   vtkLatticeTetrahedraSource();
-  ~vtkLatticeTetrahedraSource() override = default;
+  ~vtkLatticeTetrahedraSource() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
@@ -113,7 +120,7 @@ protected:
   int Dimensions[3] = { 0, 0, 0 };
 
 private:
-  bool Incomplete = false; // whether the last execution failed or was aborted
+  std::unique_ptr<deformvolume::PipelineExecution> Execution;
 
   vtkLatticeTetrahedraSource(const vtkLatticeTetrahedraSource&) = delete;
   void operator=(const vtkLatticeTetrahedraSource&) = delete;

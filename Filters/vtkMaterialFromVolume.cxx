@@ -171,17 +171,16 @@ int vtkMaterialFromVolume::RequestInformation(
 int vtkMaterialFromVolume::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** input, vtkInformationVector*)
 {
-  deformvolume::AskForAll(input[1]->GetInformationObject(0));
+  deformvolume::AskForAll(input, 1, 2);
   return 1;
 }
 
-int vtkMaterialFromVolume::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** input, vtkInformationVector* output, int requestFromOutputPort,
-  vtkMTimeType* mtime)
+int vtkMaterialFromVolume::ComputePipelineMTime(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
 {
   this->Internals->Execution.Renew(this);
-  return this->Superclass::ComputePipelineMTime(
-    request, input, output, requestFromOutputPort, mtime);
+  *mtime = this->GetMTime();
+  return 1;
 }
 
 int vtkMaterialFromVolume::RequestData(

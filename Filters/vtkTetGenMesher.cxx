@@ -5,6 +5,7 @@
 #include "IsAborted.h"
 #include "MeshRefinement.h"
 #include "PieceRequest.h"
+#include "PipelineExecution.h"
 #include "TetGenProcess.h"
 #include "VTKThreads.h"
 
@@ -14,6 +15,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMassProperties.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -24,7 +26,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <new>
 #include <sstream>
 
 #include <unistd.h>
@@ -125,11 +126,14 @@ void Orient(vtkUnstructuredGrid* mesh)
 } // namespace
 
 vtkTetGenMesher::vtkTetGenMesher()
+  : Execution(new deformvolume::PipelineExecution)
 {
   deformvolume::UseVTKThreads();
   this->SetInputArrayToProcess(
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, vtkDataSetAttributes::SCALARS);
 }
+
+vtkTetGenMesher::~vtkTetGenMesher() = default;
 
 void vtkTetGenMesher::SetPieceMode(int mode)
 {
@@ -215,23 +219,16 @@ int vtkTetGenMesher::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
 {
   // A part of the input has no closed surface: all ranks request the whole input.
-  deformvolume::AskForAll(inputVector[0]->GetInformationObject(0));
+  deformvolume::AskForAll(inputVector, 0, 1);
   return 1;
 }
 
-int vtkTetGenMesher::ComputePipelineMTime(vtkInformation* request,
-  vtkInformationVector** inputVector, vtkInformationVector* outputVector, int requestFromOutputPort,
-  vtkMTimeType* mtime)
+int vtkTetGenMesher::ComputePipelineMTime(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*, int, vtkMTimeType* mtime)
 {
-  // The executive regards the output of an execution that failed or was aborted as up to date. It
-  // would not notice a change of the modification time in a later request.
-  if (this->Incomplete)
-  {
-    this->Incomplete = false;
-    this->Modified();
-  }
-  return this->Superclass::ComputePipelineMTime(
-    request, inputVector, outputVector, requestFromOutputPort, mtime);
+  this->Execution->Renew(this);
+  *mtime = this->GetMTime();
+  return 1;
 }
 
 int vtkTetGenMesher::RequestData(
@@ -250,45 +247,27 @@ int vtkTetGenMesher::RequestData(
     return 1;
   }
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
-  int result = 1;
-  try
-  {
-    const std::vector<deformvolume::RefinementSphere> spheres = GetSpheres(this->RefinementSpheres);
-    if (vtkImageData* volume = vtkImageData::SafeDownCast(input))
+  const int done = this->Execution->Run(this, "Not enough memory. Use a greater edge length.",
+    [&]
     {
-      // The name is empty in ParaView if no array was known when the filter was made.
-      const char* name = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
-      vtkDataArray* array = name && !*name ? volume->GetPointData()->GetScalars()
-                                           : this->GetInputArrayToProcess(0, inputVector);
-      this->MeshVolume(volume, FindArray(array, volume), spheres, output);
-    }
-    else if (vtkPolyData* surface = vtkPolyData::SafeDownCast(input))
-    {
-      this->MeshSurface(surface, spheres, output);
-    }
-    Orient(output);
-  }
-  catch (const deformvolume::Aborted&)
-  {
-    this->Incomplete = true;
-  }
-  catch (const std::bad_alloc&)
-  {
-    vtkErrorMacro("Not enough memory. Use a greater edge length.");
-    this->Incomplete = true;
-    result = deformvolume::GetResultOfError(outputVector);
-  }
-  catch (const std::exception& error)
-  {
-    vtkErrorMacro(<< error.what());
-    this->Incomplete = true;
-    result = deformvolume::GetResultOfError(outputVector);
-  }
-  if (this->Incomplete)
-  {
-    output->Initialize();
-  }
-  return result;
+      const Spheres spheres = GetSpheres(this->RefinementSpheres);
+      vtkNew<vtkUnstructuredGrid> mesh;
+      if (vtkImageData* volume = vtkImageData::SafeDownCast(input))
+      {
+        // The name is empty in ParaView if no array was known when the filter was made.
+        const char* name = this->GetInputArrayInformation(0)->Get(vtkDataObject::FIELD_NAME());
+        vtkDataArray* array = name && !*name ? volume->GetPointData()->GetScalars()
+                                             : this->GetInputArrayToProcess(0, inputVector);
+        this->MeshVolume(volume, FindArray(array, volume), spheres, mesh);
+      }
+      else if (vtkPolyData* surface = vtkPolyData::SafeDownCast(input))
+      {
+        this->MeshSurface(surface, spheres, mesh);
+      }
+      Orient(mesh);
+      output->ShallowCopy(mesh);
+    });
+  return done ? 1 : deformvolume::GetResultOfError(outputVector);
 }
 
 void vtkTetGenMesher::CheckStep(double share)

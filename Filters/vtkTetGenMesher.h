@@ -56,6 +56,7 @@
 #include "vtkUnstructuredGridAlgorithm.h"
 
 #include <array>  // for std::array
+#include <memory> // for std::unique_ptr
 #include <string> // for std::string
 #include <vector> // for std::vector
 
@@ -64,6 +65,7 @@ class vtkImageData;
 class vtkPolyData;
 namespace deformvolume
 {
+class PipelineExecution;
 struct BodyVoxels;
 struct RefinementSphere;
 struct SurfaceParameters;
@@ -278,7 +280,7 @@ public:
 
 protected:
   vtkTetGenMesher();
-  ~vtkTetGenMesher() override = default;
+  ~vtkTetGenMesher() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestUpdateExtent(vtkInformation* request, vtkInformationVector** inputVector,
@@ -324,7 +326,7 @@ private:
   vtkIdType NumberOfBodyVoxelsOutside = 0;
   vtkIdType NumberOfSpeckVoxels = 0;
   vtkIdType NumberOfPieces = 0;
-  bool Incomplete = false; // whether the last execution failed or was aborted
+  std::unique_ptr<deformvolume::PipelineExecution> Execution;
 
   vtkTetGenMesher(const vtkTetGenMesher&) = delete;
   void operator=(const vtkTetGenMesher&) = delete;

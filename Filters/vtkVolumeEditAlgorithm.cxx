@@ -232,13 +232,7 @@ int vtkVolumeEditAlgorithm::RequestUpdateExtent(
   vtkInformation* outInfo = output->GetInformationObject(0);
   input[0]->GetInformationObject(0)->Set(
     Pipeline::UPDATE_EXTENT(), outInfo->Get(Pipeline::UPDATE_EXTENT()), 6);
-  for (int port = 1; port < 4; ++port)
-  {
-    if (vtkInformation* info = input[port]->GetInformationObject(0))
-    {
-      deformvolume::AskForAll(info);
-    }
-  }
+  deformvolume::AskForAll(input, 1, 4);
   return 1;
 }
 

@@ -29,16 +29,24 @@ inline int GetResultOfError(vtkInformationVector* output)
   return info->Has(key) && info->Get(key) > 1 ? 1 : 0;
 }
 
-/// Requests the whole of an input as one piece.
-inline void AskForAll(vtkInformation* info)
+/// Requests the whole of the inputs on the ports from first to before last, each as one piece.
+inline void AskForAll(vtkInformationVector** input, int first, int last)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
-  info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
-  info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
-  if (info->Has(Pipeline::WHOLE_EXTENT()))
+  for (int port = first; port < last; ++port)
   {
-    info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
+    vtkInformation* info = input[port]->GetInformationObject(0);
+    if (!info)
+    {
+      continue;
+    }
+    info->Set(Pipeline::UPDATE_PIECE_NUMBER(), 0);
+    info->Set(Pipeline::UPDATE_NUMBER_OF_PIECES(), 1);
+    info->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), 0);
+    if (info->Has(Pipeline::WHOLE_EXTENT()))
+    {
+      info->Set(Pipeline::UPDATE_EXTENT(), info->Get(Pipeline::WHOLE_EXTENT()), 6);
+    }
   }
 }
 
