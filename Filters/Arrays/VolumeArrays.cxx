@@ -12,6 +12,7 @@
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
 #include "vtkLookupTable.h"
 #include "vtkPointData.h"
 
@@ -246,16 +247,25 @@ vtkSmartPointer<vtkDataArray> MakeArrayLike(vtkDataArray* array, vtkIdType numbe
   // The class of the array is kept, unless the kernels cannot write its layout.
   const auto made = vtkSmartPointer<vtkDataArray>::Take(
     FindValues(array) ? array->NewInstance() : vtkDataArray::CreateDataArray(array->GetDataType()));
-  made->SetName(array->GetName());
   made->SetNumberOfComponents(array->GetNumberOfComponents());
-  made->CopyComponentNames(array);
-  made->SetLookupTable(array->GetLookupTable());
-  if (array->HasInformation())
-  {
-    made->CopyInformation(array->GetInformation(), 1);
-  }
+  CopyDescription(array, made);
   made->SetNumberOfTuples(numberOfTuples);
   return made;
+}
+
+void CopyDescription(vtkDataArray* from, vtkDataArray* to)
+{
+  to->SetName(from->GetName());
+  to->CopyComponentNames(from);
+  to->SetLookupTable(from->GetLookupTable());
+  if (to->HasInformation())
+  {
+    to->GetInformation()->Clear();
+  }
+  if (from->HasInformation())
+  {
+    to->CopyInformation(from->GetInformation(), 1);
+  }
 }
 
 void* GetWritableValues(vtkDataArray* array)

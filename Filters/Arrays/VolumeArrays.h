@@ -54,6 +54,9 @@ void CopyToAOS(vtkDataArray* array, VolumeArray& described);
 /// A new array with the type, components and names of another and the given number of tuples.
 vtkSmartPointer<vtkDataArray> MakeArrayLike(vtkDataArray* array, vtkIdType numberOfTuples);
 
+/// Copies the names, the lookup table and the information of an array, but no values.
+void CopyDescription(vtkDataArray* from, vtkDataArray* to);
+
 /// The memory of the values of an array of structs, such as MakeArrayLike() makes; null for other
 /// layouts.
 void* GetWritableValues(vtkDataArray* array);

@@ -5,8 +5,6 @@
 
 #include "vtkCharArray.h"
 #include "vtkImageData.h"
-#include "vtkInformation.h"
-#include "vtkLookupTable.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -66,22 +64,6 @@ bool CanStayOnDevice(vtkDataArray* array)
   constexpr int mostBytes = 4;
   const int type = array->GetDataType();
   return type == VTK_FLOAT || type == VTK_DOUBLE || array->GetDataTypeSize() <= mostBytes;
-}
-
-// Copies names, lookup table and information, but no values.
-void CopyDescription(vtkDataArray* array, vtkDataArray* wanted)
-{
-  array->SetName(wanted->GetName());
-  array->CopyComponentNames(wanted);
-  array->SetLookupTable(wanted->GetLookupTable());
-  if (array->HasInformation())
-  {
-    array->GetInformation()->Clear();
-  }
-  if (wanted->HasInformation())
-  {
-    array->CopyInformation(wanted->GetInformation(), 1);
-  }
 }
 
 } // namespace
@@ -189,7 +171,7 @@ void OutputArrays::Make(const std::vector<SourceArray>& sources, DeformRequest& 
         SetSize(made, this->NumberOfTuples); // loses the values of the earlier output
         reusable.Values = nullptr;
       }
-      CopyDescription(made, isMask ? MakeMask(0) : MakeArrayLike(sources[i].Array, 0));
+      CopyDescription(isMask ? MakeMask(0) : MakeArrayLike(sources[i].Array, 0), made);
     }
     else
     {

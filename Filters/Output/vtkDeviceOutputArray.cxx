@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkDeviceOutputArray.h"
 
+#include "VolumeArrays.h"
+
 #include "vtkArrayIteratorTemplate.h"
 #include "vtkGenericDataArray.txx"
-#include "vtkInformation.h"
-#include "vtkLookupTable.h"
 #include "vtkObjectFactory.h"
 
 #include <string>
@@ -269,13 +269,7 @@ vtkSmartPointer<vtkDataArray> MakeDeviceOutputArray(
     default:
       return host; // there are no other types
   }
-  made->SetName(host->GetName());
-  made->CopyComponentNames(host);
-  made->SetLookupTable(host->GetLookupTable());
-  if (host->HasInformation())
-  {
-    made->CopyInformation(host->GetInformation(), 1);
-  }
+  CopyDescription(host, made);
   return made;
 }
 
