@@ -423,7 +423,7 @@ MUTATIONS = {
     "elastic-cells": ("Filters/Physics/BodyReading.cxx",
                       "Stamp stamp = GetCellArraysStamp({ grid });", "Stamp stamp;",
                       ["Cxx.TestElasticDeformation"]),
-    "editor-held": ("Filters/Cutting/VolumeEditor.cxx", "array && array->GetReferenceCount() == 1", "array",
+    "editor-held": ("Filters/Cutting/VolumeEditor.cxx", "!array || array->GetReferenceCount() > 1", "!array",
                     ["Cxx.TestCutVolume", "Cxx.TestCarveVolume"]),
     "sheet-smooth": ("Filters/vtkCutVolume.cxx", "(this->SmoothCut != last.IsSmooth && !sheet.IsEmpty())", "false",
                      ["Cxx.TestSmoothCut"]),

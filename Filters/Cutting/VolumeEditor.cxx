@@ -24,30 +24,24 @@ namespace deformvolume
 namespace
 {
 
-// Makes a new array of the output with all values, if there is none, or if somebody else holds a
-// reference to the last one, which must then keep its values. The output itself holds no reference
-// at this time. Returns whether the array is new.
+// Writes values into an array of the output. changed: the bricks whose values differ from those of
+// the last call; they are marked as written. Makes a new array if there is none, or if somebody
+// else holds a reference to the last one, which must then keep its values. The output itself holds
+// no reference at this time.
 template <typename ArrayT, typename T>
-bool MakeOutput(vtkSmartPointer<ArrayT>& array, const char* name, const std::vector<T>& values)
+void WriteOutput(vtkSmartPointer<ArrayT>& array, const char* name, const std::vector<T>& values,
+  const CellBricks& bricks, const std::vector<std::size_t>& changed)
 {
-  if (array && array->GetReferenceCount() == 1)
+  if (!array || array->GetReferenceCount() > 1)
   {
-    return false;
+    array = vtkSmartPointer<ArrayT>::New();
+    array->SetName(name);
+    array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
+    std::copy(values.begin(), values.end(), array->GetPointer(0));
+    vtkNew<vtkArrayChanges> log; // the array holds a reference to it
+    log->SetArray(array);
+    return;
   }
-  array = vtkSmartPointer<ArrayT>::New();
-  array->SetName(name);
-  array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()));
-  std::copy(values.begin(), values.end(), array->GetPointer(0));
-  vtkNew<vtkArrayChanges> log; // the array holds a reference to it
-  log->SetArray(array);
-  return true;
-}
-
-// Writes the changed bricks of values into an array of the output, and marks them as written.
-template <typename ArrayT, typename T>
-void WriteBricks(ArrayT* array, const CellBricks& bricks, const std::vector<std::size_t>& changed,
-  const std::vector<T>& values)
-{
   // Consumers find the changes of more bricks faster by comparing all values.
   constexpr std::size_t mostLogged = 512;
   vtkArrayChanges* log = changed.size() <= mostLogged ? vtkArrayChanges::FindLog(array) : nullptr;
@@ -251,7 +245,8 @@ void VolumeEditor::Write(vtkImageData* volume, vtkImageData* output)
     this->Mask->SetBaseCut(cut.Crossed, cut.Distances.Values);
     this->BaseCutStamp = this->CutStamp;
   }
-  this->WriteMask();
+  WriteOutput(this->Active, ActiveTetrahedraName, this->Mask->GetMask(), this->Mask->GetBricks(),
+    this->Mask->TakeChangedBricks());
   output->GetCellData()->AddArray(this->Active);
   // Without such edits, the output shares the distances of the volume.
   if (this->Mask->HasDistanceEdits())
@@ -261,7 +256,9 @@ void VolumeEditor::Write(vtkImageData* volume, vtkImageData* output)
       this->Mask->SetBaseDistances(FindBoundaryDistances(volume).Values);
       this->BaseDistancesStamp = this->DistancesStamp;
     }
-    this->WriteDistances();
+    deformvolume::BoundaryDistances& distances = this->Mask->GetBoundaryDistances();
+    WriteOutput(this->Distances, BoundaryDistanceName, distances.Get(), distances.GetBricks(),
+      distances.TakeChangedBricks());
     output->GetPointData()->AddArray(this->Distances);
   }
   else
@@ -270,7 +267,11 @@ void VolumeEditor::Write(vtkImageData* volume, vtkImageData* output)
   }
   if (hasSmoothCuts)
   {
-    this->WriteCut();
+    SmoothCrossings& cut = this->Mask->GetSmoothCrossings();
+    WriteOutput(this->CutTetrahedra, CutTetrahedraName, cut.GetCrossed(), cut.GetBricks(),
+      cut.TakeChangedBricks());
+    WriteOutput(this->CutDistances, CutDistanceName, cut.GetDistances(), cut.GetVertexBricks(),
+      cut.TakeChangedVertexBricks());
     output->GetCellData()->AddArray(this->CutTetrahedra);
     output->GetPointData()->AddArray(this->CutDistances);
   }
@@ -278,44 +279,6 @@ void VolumeEditor::Write(vtkImageData* volume, vtkImageData* output)
   {
     this->CutTetrahedra = nullptr;
     this->CutDistances = nullptr;
-  }
-}
-
-void VolumeEditor::WriteMask()
-{
-  const bool isNew = MakeOutput(this->Active, ActiveTetrahedraName, this->Mask->GetMask());
-  const std::vector<std::size_t> changed = this->Mask->TakeChangedBricks();
-  if (!isNew)
-  {
-    WriteBricks(this->Active.Get(), this->Mask->GetBricks(), changed, this->Mask->GetMask());
-  }
-}
-
-void VolumeEditor::WriteCut()
-{
-  SmoothCrossings& cut = this->Mask->GetSmoothCrossings();
-  const bool areNewCells = MakeOutput(this->CutTetrahedra, CutTetrahedraName, cut.GetCrossed());
-  const bool areNewPoints = MakeOutput(this->CutDistances, CutDistanceName, cut.GetDistances());
-  const std::vector<std::size_t> cells = cut.TakeChangedBricks();
-  const std::vector<std::size_t> points = cut.TakeChangedVertexBricks();
-  if (!areNewCells)
-  {
-    WriteBricks(this->CutTetrahedra.Get(), cut.GetBricks(), cells, cut.GetCrossed());
-  }
-  if (!areNewPoints)
-  {
-    WriteBricks(this->CutDistances.Get(), cut.GetVertexBricks(), points, cut.GetDistances());
-  }
-}
-
-void VolumeEditor::WriteDistances()
-{
-  deformvolume::BoundaryDistances& distances = this->Mask->GetBoundaryDistances();
-  const bool isNew = MakeOutput(this->Distances, BoundaryDistanceName, distances.Get());
-  const std::vector<std::size_t> changed = distances.TakeChangedBricks();
-  if (!isNew)
-  {
-    WriteBricks(this->Distances.Get(), distances.GetBricks(), changed, distances.Get());
   }
 }
 

@@ -81,10 +81,6 @@ public:
   void Write(vtkImageData* volume, vtkImageData* output);
 
 private:
-  void WriteMask();
-  void WriteDistances();
-  void WriteCut();
-
   std::unique_ptr<MaskEditor> Mask; // null before there is a volume
   ImageGeometry Geometry;
   Extent Whole = EmptyExtent;
