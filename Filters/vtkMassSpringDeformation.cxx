@@ -13,7 +13,8 @@ class vtkMassSpringDeformation::vtkInternals
 {
 public:
   // Replaced if the device changes, which loses the simulated state.
-  std::unique_ptr<deformvolume::MassSpringSimulation> Simulation;
+  std::unique_ptr<deformvolume::MassSpringSimulation> Simulation =
+    std::make_unique<deformvolume::MassSpringSimulation>();
 };
 
 vtkMassSpringDeformation::vtkMassSpringDeformation()
@@ -26,10 +27,6 @@ vtkMassSpringDeformation::~vtkMassSpringDeformation() = default;
 deformvolume::ElasticSimulation& vtkMassSpringDeformation::PrepareSimulation()
 {
   auto& simulation = this->Internals->Simulation;
-  if (!simulation)
-  {
-    simulation = std::make_unique<deformvolume::MassSpringSimulation>();
-  }
   const std::string before = simulation->GetDevice();
   simulation->SetDevice(this->Device, static_cast<std::uint64_t>(this->MemoryLimit));
   if (!before.empty() && simulation->GetDevice() != before)
@@ -45,37 +42,32 @@ deformvolume::ElasticSimulation& vtkMassSpringDeformation::PrepareSimulation()
 
 void vtkMassSpringDeformation::ClearReport()
 {
-  if (this->Internals->Simulation)
-  {
-    this->Internals->Simulation->Report = deformvolume::MassSpringReport();
-  }
+  this->Internals->Simulation->Report = deformvolume::MassSpringReport();
 }
 
 double vtkMassSpringDeformation::GetStableTimeStep()
 {
-  return this->Internals->Simulation ? this->Internals->Simulation->GetStableTimeStep() : 0.0;
+  return this->Internals->Simulation->GetStableTimeStep();
 }
 
 vtkIdType vtkMassSpringDeformation::GetNumberOfSteps()
 {
-  return this->Internals->Simulation ? this->Internals->Simulation->Report.NumberOfSteps : 0;
+  return this->Internals->Simulation->Report.NumberOfSteps;
 }
 
 double vtkMassSpringDeformation::GetTimeStepInUse()
 {
-  return this->Internals->Simulation ? this->Internals->Simulation->Report.TimeStep : 0.0;
+  return this->Internals->Simulation->Report.TimeStep;
 }
 
 vtkIdType vtkMassSpringDeformation::GetNumberOfInvertedTetrahedra()
 {
-  return this->Internals->Simulation
-    ? static_cast<vtkIdType>(this->Internals->Simulation->Report.NumberOfInvertedTetrahedra)
-    : 0;
+  return static_cast<vtkIdType>(this->Internals->Simulation->Report.NumberOfInvertedTetrahedra);
 }
 
 std::string vtkMassSpringDeformation::GetDeviceInUse()
 {
-  return this->Internals->Simulation ? this->Internals->Simulation->GetDevice() : std::string();
+  return this->Internals->Simulation->GetDevice();
 }
 
 std::string vtkMassSpringDeformation::GetSummary()

@@ -12,9 +12,21 @@
 namespace deformvolume
 {
 
+vtkSmartPointer<vtkFloatArray> MakeDisplacements(vtkIdType tuples)
+{
+  auto array = vtkSmartPointer<vtkFloatArray>::New();
+  array->SetName("Displacement");
+  array->SetNumberOfComponents(3);
+  if (!array->Resize(tuples))
+  {
+    throw std::bad_alloc();
+  }
+  array->SetNumberOfTuples(tuples);
+  return array;
+}
+
 bool VectorOutput::Allocate(const std::string& device, vtkIdType tuples)
 {
-  constexpr int components = 3;
   const bool isOnDevice = GetDeviceAbilities(device).OwnMemory;
   if (this->Array && this->Device == device && this->Array->GetNumberOfTuples() == tuples &&
     (isOnDevice || this->Array->GetVoidPointer(0) == this->Memory))
@@ -31,21 +43,15 @@ bool VectorOutput::Allocate(const std::string& device, vtkIdType tuples)
     vtkNew<vtkDeviceVectorArray> array;
     array->SetDevice(device);
     array->SetVectors(this->Vectors);
+    array->SetName("Displacement");
     this->Array = array;
   }
   else
   {
-    vtkNew<vtkFloatArray> array;
-    array->SetNumberOfComponents(components);
-    if (!array->Resize(tuples))
-    {
-      throw std::bad_alloc();
-    }
-    array->SetNumberOfTuples(tuples);
+    const vtkSmartPointer<vtkFloatArray> array = MakeDisplacements(tuples);
     this->Memory = array->GetPointer(0);
     this->Array = array;
   }
-  this->Array->SetName("Displacement");
   return isOnDevice;
 }
 

@@ -10,8 +10,13 @@
 #include <memory>
 #include <string>
 
+class vtkFloatArray;
+
 namespace deformvolume
 {
+
+/// Makes an array "Displacement" of vectors. Throws std::bad_alloc.
+vtkSmartPointer<vtkFloatArray> MakeDisplacements(vtkIdType tuples);
 
 /// An array "Displacement" that a model of the engine writes: a vtkFloatArray, or on a device with
 /// memory of its own a vtkDeviceVectorArray, whose values stay there.

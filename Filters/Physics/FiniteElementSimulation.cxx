@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FiniteElementSimulation.h"
 
-#include <new>
+#include "VectorOutput.h"
+
 #include <sstream>
 #include <utility>
 
@@ -101,24 +102,16 @@ void FiniteElementSimulation::Warn(const EquilibriumReport& last)
 
 vtkDataArray* FiniteElementSimulation::WriteOutput(double factor)
 {
-  constexpr int components = 3;
   const std::vector<glm::dvec3>& displacements = this->Model.GetDisplacements();
   const auto nodes = static_cast<vtkIdType>(displacements.size());
   if (!this->Output || this->Output->GetNumberOfTuples() != nodes)
   {
-    this->Output = vtkSmartPointer<vtkFloatArray>::New();
-    this->Output->SetName("Displacement");
-    this->Output->SetNumberOfComponents(components);
-    if (!this->Output->Resize(nodes))
-    {
-      throw std::bad_alloc();
-    }
-    this->Output->SetNumberOfTuples(nodes);
+    this->Output = MakeDisplacements(nodes);
   }
   float* value = this->Output->GetPointer(0);
   for (const glm::dvec3& displacement : displacements)
   {
-    for (int axis = 0; axis < components; ++axis)
+    for (int axis = 0; axis < 3; ++axis)
     {
       *value++ = static_cast<float>(displacement[axis] * factor);
     }
