@@ -11,6 +11,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -151,19 +152,10 @@ vtkSmartPointer<vtkImageData> MakeMasks(vtkImageData* volume, int factor)
   }
   if (masks.Distances.Values)
   {
-    const auto distances = vtkSmartPointer<vtkFloatArray>::New();
+    vtkNew<vtkFloatArray> distances;
     distances->SetName(BoundaryDistanceName);
-    distances->SetNumberOfTuples(GetNumberOfPoints(coarse));
-    float* values = distances->GetPointer(0);
-    ForRows(coarse, fine, factor,
-      [&](std::int64_t first, std::int64_t voxel)
-      {
-        for (std::int64_t i = 0; i < GetSize(coarse, 0); ++i)
-        {
-          values[first + i] = masks.Distances.Values[voxel + i * factor];
-        }
-      });
-    image->GetPointData()->AddArray(distances);
+    distances->SetArray(const_cast<float*>(masks.Distances.Values), volume->GetNumberOfPoints(), 1);
+    image->GetPointData()->AddArray(SampleTuples(distances, fine, coarse, factor));
   }
   if (masks.Active)
   {

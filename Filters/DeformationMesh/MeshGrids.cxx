@@ -4,7 +4,6 @@
 #include "DeformationSource.h"
 #include "MaskArray.h"
 #include "MeshStamp.h"
-#include "ParallelFor.h"
 
 #include "vtkCellArray.h"
 #include "vtkCompositeDataIterator.h"
@@ -26,7 +25,7 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
-#include <array>
+#include <functional>
 
 namespace deformvolume
 {
@@ -106,25 +105,11 @@ vtkSmartPointer<vtkPoints> Subtract(vtkDataArray* points, vtkDataArray* vectors)
   differences->SetNumberOfComponents(3);
   differences->SetNumberOfTuples(points->GetNumberOfTuples());
   auto* const first = reinterpret_cast<glm::dvec3*>(differences->GetPointer(0));
-  const VectorCopier copyPoints = MakeVectorCopier(points);
-  const VectorCopier copyVectors = MakeVectorCopier(vectors);
-  constexpr vtkIdType block = 512;
   const vtkIdType count = points->GetNumberOfTuples();
-  ParallelFor(0, (count + block - 1) / block, 0,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      std::array<glm::dvec3, block> moves;
-      for (vtkIdType i = begin * block; i < std::min(end * block, count); i += block)
-      {
-        const vtkIdType some = std::min(block, count - i);
-        copyPoints(i, some, first + i);
-        copyVectors(i, some, moves.data());
-        for (vtkIdType k = 0; k < some; ++k)
-        {
-          first[i + k] -= moves[k];
-        }
-      }
-    });
+  MakeVectorCopier(points)(0, count, first);
+  std::vector<glm::dvec3> moves(static_cast<std::size_t>(count));
+  MakeVectorCopier(vectors)(0, count, moves.data());
+  std::transform(first, first + count, moves.begin(), first, std::minus<>());
   auto made = vtkSmartPointer<vtkPoints>::New();
   made->SetData(differences);
   return made;

@@ -4,7 +4,6 @@
 #include "DeformationSource.h"
 #include "Error.h"
 #include "MeshCells.h"
-#include "ParallelFor.h"
 
 #include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
@@ -46,25 +45,9 @@ std::optional<std::vector<TetrahedronChange>> FindDifferences(
 // Whether all nodes of the tetrahedra are less than count.
 bool AreNodes(const std::vector<Tetrahedron>& tetrahedra, std::size_t count)
 {
-  constexpr std::size_t step = 65536;
-  std::atomic<bool> are{ true };
-  ParallelForParts(tetrahedra.size(), step,
-    [&](std::size_t begin, std::size_t end)
-    {
-      std::int32_t last = 0;
-      for (std::size_t t = begin; t < end; ++t)
-      {
-        for (const std::int32_t node : tetrahedra[t])
-        {
-          last = std::max(last, node);
-        }
-      }
-      if (static_cast<std::size_t>(last) >= count)
-      {
-        are = false;
-      }
-    });
-  return are;
+  return std::all_of(tetrahedra.begin(), tetrahedra.end(),
+    [count](const Tetrahedron& nodes)
+    { return static_cast<std::size_t>(*std::max_element(nodes.begin(), nodes.end())) < count; });
 }
 
 } // namespace

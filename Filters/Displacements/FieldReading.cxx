@@ -4,6 +4,7 @@
 #include "DeformationSource.h"
 #include "Error.h"
 #include "MaskArray.h"
+#include "ParallelFor.h"
 #include "PipelineGeometry.h"
 
 #include "vtkAOSDataArrayTemplate.h"
@@ -72,10 +73,9 @@ void ReadFieldVectors(
   ReadVectors(array, takeDefined, "Vector", FIELD, nullptr,
     [&](vtkIdType point)
     {
-      vtkIdType first = fault;
-      while ((undefined.empty() || !undefined[point]) && point < first &&
-        !fault.compare_exchange_weak(first, point))
+      if (undefined.empty() || !undefined[point])
       {
+        Lower(fault, point);
       }
     });
   if (fault != none)

@@ -93,6 +93,13 @@ vtkDataObject* Update(vtkAlgorithm* filter, int port, vtkInformation* request, c
   return source->GetProducer()->GetOutputDataObject(source->GetIndex());
 }
 
+// The connection of a port; null if nothing is connected.
+vtkAlgorithmOutput* FindSource(vtkAlgorithm* filter, int port)
+{
+  return filter->GetNumberOfInputConnections(port) > 0 ? filter->GetInputConnection(port, 0)
+                                                       : nullptr;
+}
+
 vtkMTimeType GetTimeWithCoordinates(vtkDataObject* data)
 {
   vtkMTimeType time = data->GetMTime();
@@ -339,15 +346,13 @@ Extent GetRequestedPart(vtkInformation* output)
 
 bool CanProduceParts(vtkAlgorithm* filter, int port)
 {
-  vtkAlgorithmOutput* source =
-    filter->GetNumberOfInputConnections(port) > 0 ? filter->GetInputConnection(port, 0) : nullptr;
+  vtkAlgorithmOutput* source = FindSource(filter, port);
   return source && CanProduceParts(source->GetProducer(), source->GetIndex(), 0);
 }
 
 bool IsInMemory(vtkAlgorithm* filter, int port)
 {
-  vtkAlgorithmOutput* source =
-    filter->GetNumberOfInputConnections(port) > 0 ? filter->GetInputConnection(port, 0) : nullptr;
+  vtkAlgorithmOutput* source = FindSource(filter, port);
   return source && vtkTrivialProducer::SafeDownCast(source->GetProducer());
 }
 
