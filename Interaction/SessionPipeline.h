@@ -25,11 +25,9 @@ class vtkDataSet;
 class vtkDeformVolumeFilter;
 class vtkElasticDeformation;
 class vtkImageData;
-class vtkLatticeTetrahedraSource;
 class vtkMassSpringDeformation;
 class vtkPolyData;
 class vtkUnstructuredGrid;
-class vtkVolumeEditAlgorithm;
 
 namespace deformvolume
 {
@@ -151,8 +149,6 @@ private:
   void AddAction(Action action);
   void Undo();
   void Redo();
-  void UndoEdits(vtkVolumeEditAlgorithm* filter, int edits);
-  void RedoEdits(vtkVolumeEditAlgorithm* filter, int edits);
   void CutMesh(
     vtkElasticDeformation* elastic, vtkPolyData* sheet, const Actions& held, Action& cut);
   void Reset();

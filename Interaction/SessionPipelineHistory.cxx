@@ -88,24 +88,6 @@ void SessionPipeline::EndGrabs()
   }
 }
 
-void SessionPipeline::UndoEdits(vtkVolumeEditAlgorithm* filter, int edits)
-{
-  for (int i = 0; i < edits; ++i)
-  {
-    filter->Undo();
-  }
-  this->Update(filter);
-}
-
-void SessionPipeline::RedoEdits(vtkVolumeEditAlgorithm* filter, int edits)
-{
-  for (int i = 0; i < edits; ++i)
-  {
-    filter->Redo();
-  }
-  this->Update(filter);
-}
-
 void SessionPipeline::Undo()
 {
   if (this->Done.empty())
@@ -121,7 +103,8 @@ void SessionPipeline::Undo()
   switch (action.Kind)
   {
     case Action::CUT:
-      this->UndoEdits(this->CutFilter, 1);
+      this->CutFilter->Undo();
+      this->Update(this->CutFilter);
       if (elastic && action.HasSplit && !this->NeedsRebuild)
       {
         const Actions held = this->GetHeld();
@@ -143,7 +126,11 @@ void SessionPipeline::Undo()
       break;
     case Action::CARVE:
       this->CarveFilter->ClearToolPositions();
-      this->UndoEdits(this->CarveFilter, action.NumberOfEdits);
+      for (int edit = 0; edit < action.NumberOfEdits; ++edit)
+      {
+        this->CarveFilter->Undo();
+      }
+      this->Update(this->CarveFilter);
       break;
     case Action::MODEL:
       this->Model = action.FormerModel;
@@ -171,10 +158,15 @@ void SessionPipeline::Redo()
   switch (action.Kind)
   {
     case Action::CUT:
-      this->RedoEdits(this->CutFilter, 1);
+      this->CutFilter->Redo();
+      this->Update(this->CutFilter);
       break;
     case Action::CARVE:
-      this->RedoEdits(this->CarveFilter, action.NumberOfEdits);
+      for (int edit = 0; edit < action.NumberOfEdits; ++edit)
+      {
+        this->CarveFilter->Redo();
+      }
+      this->Update(this->CarveFilter);
       break;
     case Action::MODEL:
       this->Model = action.Model;

@@ -210,6 +210,22 @@ bool vtkDeformVolumeSession::CheckFinite(const std::vector<double>& numbers)
   return areFinite;
 }
 
+// Calls body between two steps of the thread, and returns its result; false after an error, which
+// is reported.
+bool vtkDeformVolumeSession::UsePipeline(const std::function<bool()>& body)
+{
+  try // access ends before the error is reported, as its observers may call the session
+  {
+    const vtkInternals::Access access(*this->Internals);
+    return body();
+  }
+  catch (const std::exception& error)
+  {
+    this->Report(error.what());
+    return false;
+  }
+}
+
 // kind: a SessionEvent::KindType.
 bool vtkDeformVolumeSession::Enqueue(int kind, const std::vector<double>& numbers)
 {
@@ -344,8 +360,7 @@ void vtkDeformVolumeSession::SetMovingSamplingFactor(int factor)
 
 int vtkDeformVolumeSession::GetMovingSamplingFactor()
 {
-  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
-  return this->Internals->Sampling.Factor;
+  return this->Internals->GetMovingSampling().Factor;
 }
 
 void vtkDeformVolumeSession::SetPadding(int voxels)
@@ -360,8 +375,7 @@ void vtkDeformVolumeSession::SetPadding(int voxels)
 
 int vtkDeformVolumeSession::GetPadding()
 {
-  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
-  return this->Internals->Sampling.Padding;
+  return this->Internals->GetMovingSampling().Padding;
 }
 
 void vtkDeformVolumeSession::SetBackgroundValue(double value)
@@ -374,8 +388,7 @@ void vtkDeformVolumeSession::SetBackgroundValue(double value)
 
 double vtkDeformVolumeSession::GetBackgroundValue()
 {
-  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
-  return this->Internals->Sampling.BackgroundValue;
+  return this->Internals->GetMovingSampling().BackgroundValue;
 }
 
 void vtkDeformVolumeSession::AddCategoricalArray(const std::string& name)
@@ -484,13 +497,8 @@ vtkDataSet* vtkDeformVolumeSession::CopyDeformation()
 
 bool vtkDeformVolumeSession::Probe(double x, double y, double z)
 {
-  if (!this->CheckInputs() || !this->CheckFinite({ x, y, z }))
+  const auto probe = [&]
   {
-    return false;
-  }
-  try // access ends before the error is reported, as its observers may call the session
-  {
-    const vtkInternals::Access access(*this->Internals);
     deformvolume::SessionPipeline& pipeline = this->Internals->Pipeline;
     const auto sampling = this->Internals->GetFullSampling();
     vtkImageData* output = pipeline.ResampleForSearch(sampling);
@@ -505,12 +513,8 @@ bool vtkDeformVolumeSession::Probe(double x, double y, double z)
     const glm::dvec3 rest = pipeline.FindRestPosition({ x, y, z }, sampling);
     std::copy(&rest.x, &rest.x + 3, this->ProbedRestPosition);
     return true;
-  }
-  catch (const std::exception& error)
-  {
-    this->Report(error.what());
-    return false;
-  }
+  };
+  return this->CheckInputs() && this->CheckFinite({ x, y, z }) && this->UsePipeline(probe);
 }
 
 void vtkDeformVolumeSession::GetHandles(vtkPolyData* handles)

@@ -357,7 +357,8 @@ private:
   bool CheckInputs();
   bool CheckFinite(const std::vector<double>& numbers);
   bool Enqueue(int kind, const std::vector<double>& numbers = {});
-  bool Save(const std::string& fileName, const char* suffix, const std::function<void()>& write);
+  bool UsePipeline(const std::function<bool()>& body);
+  bool Save(const std::string& fileName, const char* suffix, const std::function<bool()>& write);
 
   double ProbedValue = 0.0;
   double ProbedRestPosition[3] = { 0.0, 0.0, 0.0 };

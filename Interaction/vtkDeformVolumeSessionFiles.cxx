@@ -55,25 +55,18 @@ void WriteData(vtkDataObject* data, const std::string& fileName)
 
 bool vtkDeformVolumeSession::SaveSession(const std::string& fileName)
 {
-  if (!this->CheckInputs())
-  {
-    return false;
-  }
-  try // access ends before the error is reported, as its observers may call the session
-  {
-    const vtkInternals::Access access(*this->Internals);
-    if (!this->Internals->Queue.empty())
-    {
-      this->Internals->RunOnce();
-    }
-    deformvolume::WriteEvents(fileName, this->Internals->GetInputHash(), this->Internals->Record);
-    return true;
-  }
-  catch (const std::exception& error)
-  {
-    this->Report(error.what());
-    return false;
-  }
+  return this->CheckInputs() &&
+    this->UsePipeline(
+      [&]
+      {
+        if (!this->Internals->Queue.empty())
+        {
+          this->Internals->RunOnce();
+        }
+        deformvolume::WriteEvents(
+          fileName, this->Internals->GetInputHash(), this->Internals->Record);
+        return true;
+      });
 }
 
 bool vtkDeformVolumeSession::LoadSession(const std::string& fileName)
@@ -132,7 +125,7 @@ bool vtkDeformVolumeSession::LoadSession(const std::string& fileName)
 }
 
 bool vtkDeformVolumeSession::Save(
-  const std::string& fileName, const char* suffix, const std::function<void()>& write)
+  const std::string& fileName, const char* suffix, const std::function<bool()>& write)
 {
   if (!this->CheckInputs())
   {
@@ -144,17 +137,7 @@ bool vtkDeformVolumeSession::Save(
     this->Report("Cannot write " + fileName + ": the name must end in " + suffix + ".");
     return false;
   }
-  try // access ends before the error is reported, as its observers may call the session
-  {
-    const vtkInternals::Access access(*this->Internals);
-    write();
-    return true;
-  }
-  catch (const std::exception& error)
-  {
-    this->Report(error.what());
-    return false;
-  }
+  return this->UsePipeline(write);
 }
 
 bool vtkDeformVolumeSession::SaveVolume(const std::string& fileName)
@@ -164,6 +147,7 @@ bool vtkDeformVolumeSession::SaveVolume(const std::string& fileName)
     {
       WriteData<vtkXMLImageDataWriter>(
         this->Internals->Pipeline.Resample(this->Internals->GetFullSampling()), fileName);
+      return true;
     });
 }
 
@@ -192,5 +176,6 @@ bool vtkDeformVolumeSession::SaveMesh(const std::string& fileName)
           id, position[0] + by[0], position[1] + by[1], position[2] + by[2]);
       }
       WriteData<vtkXMLUnstructuredGridWriter>(deformed, fileName);
+      return true;
     });
 }

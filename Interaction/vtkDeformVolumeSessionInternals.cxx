@@ -18,10 +18,15 @@ double GetSeconds()
 
 } // namespace
 
-deformvolume::SessionPipeline::Sampling vtkDeformVolumeSession::vtkInternals::GetFullSampling()
+deformvolume::SessionPipeline::Sampling vtkDeformVolumeSession::vtkInternals::GetMovingSampling()
 {
   const std::lock_guard<std::mutex> lock(this->QueueMutex);
-  deformvolume::SessionPipeline::Sampling sampling = this->Sampling;
+  return this->Sampling;
+}
+
+deformvolume::SessionPipeline::Sampling vtkDeformVolumeSession::vtkInternals::GetFullSampling()
+{
+  deformvolume::SessionPipeline::Sampling sampling = this->GetMovingSampling();
   sampling.Factor = 1;
   return sampling;
 }

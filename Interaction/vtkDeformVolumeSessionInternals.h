@@ -68,7 +68,8 @@ public:
     return std::exchange(this->Sampling.*member, value) != value;
   }
 
-  // The sampling at rest.
+  // The sampling while the body moves, and at rest.
+  deformvolume::SessionPipeline::Sampling GetMovingSampling();
   deformvolume::SessionPipeline::Sampling GetFullSampling();
 
   // Computed only for files, because it reads the whole volume.
