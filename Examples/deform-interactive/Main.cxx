@@ -5,12 +5,6 @@
 #include "Picture.h"
 #include "Viewer.h"
 
-#include <vtkLogger.h>
-#include <vtkNew.h>
-#include <vtkOutputWindow.h>
-
-#include <iostream>
-
 int main(int argc, char* argv[])
 {
   Arguments arguments;
@@ -18,24 +12,11 @@ int main(int argc, char* argv[])
   {
     return *code;
   }
-  // Messages prints errors; VTK's logger would print them a second time.
-  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
-  const vtkNew<Messages> messages;
-  messages->SetProgram("deform-interactive");
-  vtkOutputWindow::SetInstance(messages);
-  int code = 0;
-  try
-  {
-    CheckDisplay();
-    Viewer viewer(arguments, *messages);
-    viewer.Run();
-    messages->Check("the program ended with an error");
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << "deform-interactive: " << error.what() << "\n";
-    code = 1;
-  }
-  vtkOutputWindow::SetInstance(nullptr);
-  return code;
+  return RunProgram("deform-interactive",
+    [&arguments](Messages& messages)
+    {
+      CheckDisplay();
+      Viewer viewer(arguments, messages);
+      viewer.Run();
+    });
 }

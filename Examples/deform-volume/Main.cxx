@@ -21,7 +21,6 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDeformVolumeFilter.h>
-#include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkStringArray.h>
@@ -487,28 +486,16 @@ int main(int argc, char* argv[])
   {
     return *code;
   }
-  // Messages keeps errors for the catch block; VTK's logger would print them a second time.
-  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
-  const vtkNew<Messages> messages;
-  vtkOutputWindow::SetInstance(messages);
-  int code = 0;
-  try
-  {
-    if (options.ListDevices)
+  return RunProgram("deform-volume",
+    [&options](Messages& messages)
     {
-      ListDevices();
-    }
-    else
-    {
-      DeformVolume(options, *messages);
-    }
-    messages->Check("the program ended with an error");
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << "deform-volume: " << error.what() << "\n";
-    code = 1;
-  }
-  vtkOutputWindow::SetInstance(nullptr);
-  return code;
+      if (options.ListDevices)
+      {
+        ListDevices();
+      }
+      else
+      {
+        DeformVolume(options, messages);
+      }
+    });
 }

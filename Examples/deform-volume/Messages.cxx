@@ -3,6 +3,8 @@
 
 #include "Failure.h"
 
+#include <vtkLogger.h>
+#include <vtkNew.h>
 #include <vtkObjectFactory.h>
 
 #include <iostream>
@@ -115,4 +117,26 @@ void Messages::Check(const std::string& doing, bool succeeded)
   {
     throw Failure(doing + ": no reason was reported. Is there enough free disk space?");
   }
+}
+
+int RunProgram(const std::string& program, const std::function<void(Messages&)>& body)
+{
+  // Messages keeps errors for the catch block; VTK's logger would print them a second time.
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  const vtkNew<Messages> messages;
+  messages->Program = program;
+  vtkOutputWindow::SetInstance(messages);
+  int code = 0;
+  try
+  {
+    body(*messages);
+    messages->Check("the program ended with an error");
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << program << ": " << error.what() << "\n";
+    code = 1;
+  }
+  vtkOutputWindow::SetInstance(nullptr);
+  return code;
 }

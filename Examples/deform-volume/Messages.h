@@ -4,6 +4,7 @@
 
 #include <vtkOutputWindow.h>
 
+#include <functional>
 #include <mutex>
 #include <sstream>
 #include <string>
@@ -25,9 +26,6 @@ class Messages : public vtkOutputWindow
 public:
   static Messages* New();
   vtkTypeMacro(Messages, vtkOutputWindow);
-
-  /// Set the name of the program, with which warnings begin. Default: deform-volume.
-  void SetProgram(const std::string& name) { this->Program = name; }
 
   /// Prints a warning.
   void Warn(const std::string& text) { this->DisplayWarningText(text.c_str()); }
@@ -66,8 +64,15 @@ private:
   std::string FirstError;
   bool Reads = false;
   std::vector<std::string> WaitingWarnings;
-  std::string Program = "deform-volume";
+  std::string Program; // with whose name warnings begin
+
+  friend int RunProgram(const std::string&, const std::function<void(Messages&)>&);
 };
+
+/// The main function of a program: calls body with messages that replace VTK's output window.
+/// Prints the exception or the error with which body ends, after the name of the program. Returns
+/// the exit code: 0 or 1.
+int RunProgram(const std::string& program, const std::function<void(Messages&)>& body);
 
 /// Whether a text names classes or addresses, which mean nothing to users of a program.
 bool NamesCode(const std::string& text);
