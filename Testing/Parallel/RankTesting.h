@@ -80,45 +80,14 @@ inline filterTesting::Extent GetPiece(filterTesting::Extent whole, int ghosts)
   return piece;
 }
 
-/// Whether an image is a part of another one, bit by bit. Arrays are compared by name, because
-/// their order changes when images are sent to other ranks.
-inline testing::AssertionResult IsPartOf(vtkImageData* part, vtkImageData* whole)
-{
-  using namespace filterTesting;
-  vtkNew<vtkImageData> cropped;
-  cropped->ShallowCopy(whole);
-  cropped->Crop(part->GetExtent());
-  vtkPointData* expected = cropped->GetPointData();
-  if (GetExtent(part) != GetExtent(cropped) ||
-    GetPoint(part, part->GetNumberOfPoints() - 1) !=
-      GetPoint(cropped, part->GetNumberOfPoints() - 1))
-  {
-    return testing::AssertionFailure() << "the extents or the points differ";
-  }
-  if (expected->GetNumberOfArrays() < 2)
-  {
-    return testing::AssertionFailure() << "the whole image has less than two arrays";
-  }
-  for (int i = 0; i < expected->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = expected->GetArray(i);
-    const testing::AssertionResult equality =
-      HaveEqualBits(array, part->GetPointData()->GetArray(array->GetName()));
-    if (!equality)
-    {
-      return equality;
-    }
-  }
-  return testing::AssertionSuccess();
-}
-
 /// Updates a filter, and checks that its output is the piece of this rank.
 inline void CheckPiece(vtkAlgorithm* filter, vtkImageData* whole, const std::string& name)
 {
   filter->UpdatePiece(GetRank(), GetRanks(), 0);
   auto* output = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0));
   EXPECT_EQ(filterTesting::GetExtent(output), GetPiece(filterTesting::GetExtent(whole), 0));
-  EXPECT_TRUE(IsPartOf(output, whole)) << name << ", rank " << GetRank() << " of " << GetRanks();
+  EXPECT_TRUE(filterTesting::IsPartOf(output, whole))
+    << name << ", rank " << GetRank() << " of " << GetRanks();
 }
 
 #endif

@@ -50,42 +50,10 @@ vtkSmartPointer<vtkImageData> MakeWhole(const Case& from)
   return image;
 }
 
-testing::AssertionResult IsPartOf(vtkImageData* part, vtkImageData* whole)
-{
-  vtkNew<vtkImageData> cropped;
-  cropped->ShallowCopy(whole);
-  cropped->Crop(part->GetExtent());
-  return AreEqual(part, cropped);
-}
-
-/// Describes the differences: the number of values that differ in each array. "" if there are none.
-std::string Compare(vtkImageData* part, vtkImageData* whole)
-{
-  if (IsPartOf(part, whole))
-  {
-    return "";
-  }
-  vtkNew<vtkImageData> cropped;
-  cropped->ShallowCopy(whole);
-  cropped->Crop(part->GetExtent());
-  std::string words = " differs:";
-  for (int i = 0; i < cropped->GetPointData()->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* expected = cropped->GetPointData()->GetArray(i);
-    vtkDataArray* actual = part->GetPointData()->GetArray(expected->GetName());
-    int differences = 0;
-    for (vtkIdType id = 0; actual && id < expected->GetNumberOfTuples(); ++id)
-    {
-      differences += expected->GetComponent(id, 0) != actual->GetComponent(id, 0) ? 1 : 0;
-    }
-    words += std::string(" ") + expected->GetName() + " " + std::to_string(differences);
-  }
-  return words;
-}
-
 /// Compares all arrays of pieces with those of the whole output.
-void CheckPieces(const Case& from, vtkImageData* whole, int pieces, int mode)
+void CheckPieces(const Case& from, vtkImageData* whole)
 {
+  constexpr int pieces = 8;
   Streamed streamed(from);
   Extent extent = streamed.GetWhole();
   EXPECT_EQ(extent, GetExtent(whole));
@@ -93,12 +61,12 @@ void CheckPieces(const Case& from, vtkImageData* whole, int pieces, int mode)
   for (int piece = 0; piece < pieces; ++piece)
   {
     Extent part;
-    translator->PieceToExtentThreadSafe(piece, pieces, 0, extent.data(), part.data(), mode, 0);
+    translator->PieceToExtentThreadSafe(
+      piece, pieces, 0, extent.data(), part.data(), vtkExtentTranslator::BLOCK_MODE, 0);
     streamed.Filter->UpdateExtent(part.data());
     EXPECT_EQ(streamed.TakeErrors(), 0);
     EXPECT_EQ(GetExtent(streamed.Filter->GetOutput()), part);
-    const std::string differences = Compare(streamed.Filter->GetOutput(), whole);
-    EXPECT_EQ(differences, "") << from.Name << ", piece " << piece << " of " << pieces;
+    EXPECT_TRUE(IsPartOf(streamed.Filter->GetOutput(), whole)) << from.Name << ", piece " << piece;
   }
 }
 
@@ -281,10 +249,7 @@ TEST_F(DeformStreaming, Cases)
   for (const Case& from : MakeCases())
   {
     const auto whole = MakeWhole(from);
-    std::cout << from.Name << '\n';
-    CheckPieces(from, whole, 3, vtkExtentTranslator::Y_SLAB_MODE);
-    CheckPieces(from, whole, 8, vtkExtentTranslator::BLOCK_MODE);
-    CheckStreamer(from, whole, 5);
+    CheckPieces(from, whole);
     if (from.Name == "Smooth cut")
     {
       CheckCutInParts(from);

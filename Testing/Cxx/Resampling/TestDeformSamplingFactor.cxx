@@ -458,10 +458,7 @@ TEST(DeformSamplingFactor, Parts)
     {
       streamed.Filter->UpdatePiece(part, parts, 0);
       EXPECT_EQ(streamed.TakeErrors(), 0);
-      vtkNew<vtkImageData> cropped;
-      cropped->ShallowCopy(whole);
-      cropped->Crop(streamed.Filter->GetOutput()->GetExtent());
-      EXPECT_TRUE(AreEqual(streamed.Filter->GetOutput(), cropped));
+      EXPECT_TRUE(IsPartOf(streamed.Filter->GetOutput(), whole));
     }
     if (from.Name == "Extrapolated mesh") // needs the whole volume
     {

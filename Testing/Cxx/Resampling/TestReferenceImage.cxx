@@ -257,10 +257,8 @@ TEST(ReferenceImage, PartsAndUpdates)
   {
     part.Filter->UpdateInformation();
     part.Filter->UpdateExtent(extent.data());
-    vtkNew<vtkImageData> cut;
-    cut->DeepCopy(expected);
-    cut->Crop(extent.data());
-    EXPECT_TRUE(AreEqual(part.Filter->GetOutput(), cut));
+    EXPECT_EQ(GetExtent(part.Filter->GetOutput()), extent);
+    EXPECT_TRUE(IsPartOf(part.Filter->GetOutput(), expected));
   }
   auto* vectors = vtkFloatArray::SafeDownCast(mesh->GetPointData()->GetVectors());
   const vtkIdType node = 3 * 36 + 3 * 6 + 2;
@@ -302,10 +300,7 @@ TEST(ReferenceImage, ThinReferences)
       layer->SetExtent(const_cast<int*>(extent.data()));
       OnReference thin(volume, nullptr, layer);
       set(thin);
-      vtkNew<vtkImageData> cut;
-      cut->DeepCopy(expected);
-      cut->Crop(extent.data());
-      EXPECT_TRUE(AreEqual(thin.Update(), cut));
+      EXPECT_TRUE(IsPartOf(thin.Update(), expected));
       EXPECT_EQ(thin.TakeWarning(), "");
       EXPECT_GT(thin.Filter->GetNumberOfCoveredVoxels(), 0);
     }
