@@ -141,7 +141,11 @@ std::string CheckValues(vtkImageData* output, vtkImageData* volume, const Settin
       continue;
     }
     const std::string name = array->GetName();
-    const bool exact = settings.CategoricalArrays.count(name) > 0;
+    if (settings.HasDensity && name == "value")
+    {
+      continue;
+    }
+    const bool exact = IsCategorical(settings, name);
     for (int component = 0; component < array->GetNumberOfComponents(); ++component)
     {
       std::vector<double> values;
@@ -151,7 +155,8 @@ std::string CheckValues(vtkImageData* output, vtkImageData* volume, const Settin
         values.push_back(source->GetComponent(id, component));
         finite = finite && std::abs(values.back()) < 1e30;
       }
-      if (!finite || (!exact && settings.Interpolation != 0))
+      if (!finite ||
+        (!exact && settings.Interpolation == vtkDeformVolumeFilter::CUBIC_INTERPOLATION))
       {
         continue;
       }

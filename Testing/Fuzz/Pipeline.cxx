@@ -116,6 +116,11 @@ Pipeline::Pipeline(std::uint64_t seed, std::ostream& log)
     this->Settings.Resampler =
       this->Random.Chance(0.9) ? vtkDeformVolumeFilter::EXACT : vtkDeformVolumeFilter::AUTOMATIC;
     this->Settings.OpenSplits = this->Random.Chance(0.4);
+    if (this->Random.Chance(0.3))
+    {
+      this->Settings.OutsideMode = vtkDeformVolumeFilter::KEEP;
+      this->Settings.FadeDistance = this->Volume->GetLength() / 8.0;
+    }
   }
   for (int edits = !this->IsLive && this->Random.Chance(0.6) ? this->Random.Int(1, 4) : 0;
        edits > 0; --edits)

@@ -158,8 +158,8 @@ void MoveSome(vtkDataSet* points, vtkDataArray* vectors, vtkImageData* volume, R
   const bool isOfVoxels = vectors->GetNumberOfTuples() > 20000;
   const double radius = random.Pick({ 0.0, 0.0, 0.0, 6.0, 9.0, isOfVoxels ? 6.0 : 1e3 });
   // A point that moves far folds its cells.
-  const double most =
-    random.Pick({ 0.3, 1.0, radius > 0.0 ? 0.3 : 12.0 }) * (isOfVoxels && radius > 0.0 ? 0.3 : 1.0);
+  const double most = random.Pick({ 0.3, radius > 0.0 ? 1.0 : 12.0, radius > 0.0 ? 0.3 : 12.0 }) *
+    (isOfVoxels && radius > 0.0 ? 0.3 : 1.0);
   for (vtkIdType point = 0; point < points->GetNumberOfPoints(); ++point)
   {
     if (point == first ||

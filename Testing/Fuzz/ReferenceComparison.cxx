@@ -248,11 +248,12 @@ std::string CompareArrays(const reference::Result& result, vtkImageData* output,
   {
     vtkDataArray* array = output->GetPointData()->GetArray(i);
     vtkDataArray* source = volume->GetPointData()->GetArray(array->GetName());
-    if (array == mask || !source)
+    if (array == mask || !source ||
+      (settings.HasDensity && source->GetName() == std::string("value")))
     {
       continue;
     }
-    const bool categorical = settings.CategoricalArrays.count(array->GetName()) > 0;
+    const bool categorical = IsCategorical(settings, array->GetName());
     const bool cubic = settings.Interpolation == vtkDeformVolumeFilter::CUBIC_INTERPOLATION;
     switch (array->GetDataType())
     {

@@ -63,7 +63,7 @@ void EditOutput(Settings& settings, vtkImageData* volume, Random& random, Geomet
 
 void EditMethod(Settings& settings, Random& random)
 {
-  switch (random.Int(0, 11))
+  switch (random.Int(0, 12))
   {
     case 0:
       settings.OutsideMode = random.Int(0, 2);
@@ -73,7 +73,7 @@ void EditMethod(Settings& settings, Random& random)
       settings.Resampler = random.Pick({ 0, 0, 2, 3, 3 });
       break;
     case 2:
-      settings.Interpolation = random.Chance(0.3) ? 1 : 0;
+      settings.Interpolation = random.Pick({ 0, 0, 0, 1, 2 });
       break;
     case 3:
     case 4:
@@ -92,6 +92,10 @@ void EditMethod(Settings& settings, Random& random)
     case 8:
       settings.CategoricalArrays = random.Chance(0.8) ? std::set<std::string>{ "label" }
                                                       : std::set<std::string>{ "value", "absent" };
+      break;
+    case 10:
+      settings.HasExtraArrays = random.Chance(0.7);
+      settings.HasDensity = settings.HasExtraArrays && random.Chance(0.5);
       break;
     default:
       settings.DisplacementScale = random.Chance(0.03)
@@ -148,7 +152,8 @@ void EditSettings(
       << s.OpenSplits << " inverse " << s.FieldIsInverse << " deformed points "
       << s.PointsAreDeformed << " device \"" << s.Device << "\" memory " << s.MemoryLimit
       << " displacements \"" << s.Displacements << "\" categorical "
-      << *s.CategoricalArrays.rbegin() << '\n';
+      << *s.CategoricalArrays.rbegin() << " extra arrays " << s.HasExtraArrays << " density "
+      << s.HasDensity << '\n';
 }
 
 void Apply(const Settings& settings, vtkDeformVolumeFilter* filter)
@@ -174,6 +179,17 @@ void Apply(const Settings& settings, vtkDeformVolumeFilter* filter)
   {
     filter->AddCategoricalArray(name.c_str());
   }
+  filter->SetGenerateRestPositions(settings.HasExtraArrays);
+  filter->SetGenerateJacobian(settings.HasExtraArrays);
+  filter->SetGenerateFoldCount(settings.HasExtraArrays);
+  if (settings.HasDensity)
+  {
+    filter->AddDensityArray("value");
+  }
+  else
+  {
+    filter->ClearDensityArrays();
+  }
   filter->SetResampler(settings.Resampler);
   filter->SetInterpolation(settings.Interpolation);
   filter->SetIncremental(settings.Incremental);
@@ -185,6 +201,12 @@ void Apply(const Settings& settings, vtkDeformVolumeFilter* filter)
   filter->SetMemoryLimit(settings.MemoryLimit);
   filter->SetInputArrayToProcess(
     0, 1, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, settings.Displacements.c_str());
+}
+
+bool IsCategorical(const Settings& settings, const std::string& name)
+{
+  return settings.CategoricalArrays.count(name) > 0 ||
+    settings.Interpolation == vtkDeformVolumeFilter::NEAREST_INTERPOLATION;
 }
 
 } // namespace fuzz

@@ -28,6 +28,10 @@ struct Settings
   int OutsideMode = vtkDeformVolumeFilter::DISCARD;
   double FadeDistance = 0.0;
   std::set<std::string> CategoricalArrays{ "label" };
+  /// Rest positions, Jacobians and fold counts.
+  bool HasExtraArrays = false;
+  /// Whether the array "value" is a density.
+  bool HasDensity = false;
   int Resampler = vtkDeformVolumeFilter::AUTOMATIC;
   int Interpolation = vtkDeformVolumeFilter::LINEAR_INTERPOLATION;
   bool Incremental = true;
@@ -46,6 +50,9 @@ void EditSettings(
   Settings& settings, vtkImageData* volume, Random& random, Geometry geometry, std::ostream& log);
 
 void Apply(const Settings& settings, vtkDeformVolumeFilter* filter);
+
+/// Whether the values of an array are not interpolated.
+bool IsCategorical(const Settings& settings, const std::string& name);
 
 } // namespace fuzz
 

@@ -196,12 +196,15 @@ vtkSmartPointer<vtkUnstructuredGrid> MakeFineLattice(
 {
   // The static mapping of the finest lattices has links, that of the coarser ones has runs.
   const int nodes = random.Pick({ 9, 12, 14, 25 });
-  const double margin = random.Pick({ 0.0, 1.0 });
   double bounds[6];
   volume->GetBounds(bounds);
-  for (int i = 0; i < 6; ++i)
+  // In sizes of the volume. Some lattices are smaller than the volume.
+  const double margin = random.Pick({ 0.0, 0.02, -0.1 });
+  for (int axis = 0; axis < 3; ++axis)
   {
-    bounds[i] += i % 2 == 0 ? -margin : margin;
+    const double added = margin * (bounds[2 * axis + 1] - bounds[2 * axis]);
+    bounds[2 * axis] -= added;
+    bounds[2 * axis + 1] += added;
   }
   log << "lattice of " << nodes << " nodes an axis, margin " << margin << '\n';
   vtkNew<vtkLatticeTetrahedraSource> source;
