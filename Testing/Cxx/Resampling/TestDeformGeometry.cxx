@@ -244,6 +244,14 @@ TEST(DeformGeometry, OutsideTheMesh)
   deformed.Update();
   CheckValues(deformed, core, shift);
 
+  // A mesh that ends between voxels: x from 3.1 to 8.8, y from 3.2 to 9.9, z from 3.35 to 8.05. The
+  // engine's TestMeshBoundary has bodies of other shapes and poses.
+  const auto between = MakeTetrahedra({ { 2.6, 8.3, 2.7, 9.4, 3.6, 8.3 } }, { { 3, 3, 3 } });
+  SetDisplacements(between, Shift(0.5, 0.5, -0.25));
+  deformed.Filter->SetDeformationData(between);
+  EXPECT_EQ(GetExtent(deformed.Update()), (Extent{ { 4, 8, 4, 9, 4, 8 } }));
+  EXPECT_EQ(deformed.Filter->GetNumberOfCoveredVoxels(), 5 * 6 * 5);
+
   // The same with a field.
   auto field = MakeImage({ { 0, 5, 0, 6, 0, 4 } }, glm::dvec3(1.0), glm::dvec3(3.0, 3.0, 4.0));
   SetDisplacements(field, Shift(2.0, -1.0, 0.5));
