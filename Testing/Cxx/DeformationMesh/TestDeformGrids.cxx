@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One mesh in different grids: grids that share arrays, equal copies, a deformed mesh and one at
-// rest, other orders of points and cells. Edits of a grid in place must be detected. All results
-// are compared bit by bit with those of a new filter.
+// rest. Edits of a grid in place must be detected. All results are compared bit by bit with those
+// of a new filter.
 #include "ArrayMaking.h"
 #include "FilterTesting.h"
 
@@ -20,7 +20,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <random>
 #include <vector>
 
 using namespace filterTesting;
@@ -437,72 +436,6 @@ TEST(DeformGrids, Floats)
     }
     second.Filter->SetDisplacementScale(1.0);
     EXPECT_TRUE(AreEqual(first.Update(), second.Update()));
-  }
-}
-
-// Nodes and cells in random order. With a margin of 0 nodes are at voxels, which thus belong to
-// several tetrahedra.
-TEST(DeformGrids, Renumbering)
-{
-  const auto volume = MakeVolume({ { 0, 40, 0, 24, 0, 32 } });
-  for (const double margin : { 0.0, 0.37 })
-  {
-    const Grid mesh = MakeMesh(volume, margin == 0.0 ? 9 : 30, margin);
-    const vtkIdType nodes = mesh->GetNumberOfPoints();
-    std::vector<vtkIdType> order(nodes);
-    std::vector<vtkIdType> cellOrder(mesh->GetNumberOfCells());
-    std::mt19937 random(2);
-    for (std::vector<vtkIdType>* one : { &order, &cellOrder })
-    {
-      std::iota(one->begin(), one->end(), vtkIdType{ 0 });
-      std::shuffle(one->begin(), one->end(), random);
-    }
-    std::vector<vtkIdType> numbers(nodes);
-    auto other = Grid::New();
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    for (vtkIdType node = 0; node < nodes; ++node)
-    {
-      points->InsertNextPoint(mesh->GetPoint(order[node]));
-      numbers[order[node]] = node;
-    }
-    other->SetPoints(points);
-    other->AllocateExact(mesh->GetNumberOfCells(), 4 * mesh->GetNumberOfCells());
-    vtkNew<vtkIdList> ids;
-    for (const vtkIdType cell : cellOrder)
-    {
-      mesh->GetCellPoints(cell, ids);
-      for (vtkIdType& id : *ids)
-      {
-        id = numbers[id];
-      }
-      other->InsertNextCell(VTK_TETRA, ids);
-    }
-    for (const bool extrapolate : { false, true })
-    {
-      Deformed first(volume, mesh);
-      Deformed second(volume, other);
-      for (Deformed* deformed : { &first, &second })
-      {
-        deformed->Filter->SetResamplerToExact();
-        deformed->Filter->SetOutsideMode(
-          extrapolate ? vtkDeformVolumeFilter::EXTRAPOLATE : vtkDeformVolumeFilter::DISCARD);
-      }
-      for (int step = 0; step < 4; ++step)
-      {
-        // From the second step on only nodes near a corner move.
-        const WorldMap map = [=](const glm::dvec3& p)
-        {
-          const double more = p.x < 12.0 && p.y < 12.0 ? 0.4 * step : 0.0;
-          return p + glm::dvec3(2.3 * std::sin(0.13 * p.y) + more, 0.7 * std::cos(0.21 * p.x), 0.1);
-        };
-        SetDisplacements(mesh, map);
-        SetDisplacements(other, map);
-        EXPECT_TRUE(AreEqual(first.Update(), second.Update()));
-        EXPECT_EQ(GetReported(first.Filter, "Bricks resampled"),
-          GetReported(second.Filter, "Bricks resampled"));
-      }
-    }
   }
 }
 
