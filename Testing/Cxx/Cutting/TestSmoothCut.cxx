@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cuts that divide tetrahedra: misuse, cuts that stay closed, gaps between two moved planes, split
-// meshes, undo and redo, chains of filters, tools, deformed volumes, coarse volumes and ChainMail.
+// Cuts that divide tetrahedra: misuse, gaps between two moved planes, split meshes, undo and redo,
+// chains of filters, tools, deformed volumes, coarse volumes and ChainMail. Kernels.TestSmoothCuts
+// compares cuts that stay closed, labels and boundary distances with a reference.
 #include "ChainMailTesting.h"
 #include "EditChecks.h"
 
-#include "vtkCarveVolume.h"
 #include "vtkCutVolume.h"
 
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
-#include <vtkSphere.h>
-
-#include <glm/geometric.hpp>
 
 #include <cmath>
 #include <map>
@@ -137,38 +134,6 @@ TEST(SmoothCut, Misuse)
     !GetCells(deformed.Filter->GetOutput()) && !GetDistances(deformed.Filter->GetOutput()));
 }
 
-// A cut that is not opened does not change the output.
-TEST(SmoothCut, Closed)
-{
-  auto volume = MakeVolume(Box);
-  Edited<vtkCutVolume> cut;
-  SetUpCut(cut, volume, 4.3);
-  EXPECT_EQ(cut.CountOff(), 0);
-  auto mesh = MakeMesh(volume, 4);
-  for (const double amount : { 0.0, 0.3 })
-  {
-    SetDisplacements(mesh,
-      [=](const glm::dvec3& p)
-      { return glm::dvec3(p.x + amount * std::sin(0.4 * p.y), p.y, p.z + 2.0 * amount); });
-    filterTesting::Deformed whole(volume, mesh);
-    filterTesting::Deformed closed;
-    closed.Filter->SetInputConnection(cut.Filter->GetOutputPort());
-    closed.Filter->SetDeformationData(mesh);
-    vtkImageData* expected = whole.Update();
-    vtkImageData* found = closed.Update();
-    EXPECT_EQ(GetExtent(found), GetExtent(expected));
-    EXPECT_EQ(closed.Filter->GetNumberOfCoveredVoxels(), whole.Filter->GetNumberOfCoveredVoxels());
-    for (vtkIdType id = 0; id < expected->GetNumberOfPoints(); ++id)
-    {
-      EXPECT_EQ(closed.IsCovered(id), whole.IsCovered(id));
-      // Values are interpolated in single or in double precision, then rounded to shorts.
-      EXPECT_LE(
-        std::abs(closed.GetValues()->GetComponent(id, 0) - whole.GetValues()->GetComponent(id, 0)),
-        amount == 0.0 ? 0.0 : 1.0);
-    }
-  }
-}
-
 // Two triangles of opposite orientation divide as one sheet, also with triangles without area, and
 // with a triangle that the sheet has twice.
 TEST(SmoothCut, TrianglesWithoutArea)
@@ -244,68 +209,6 @@ TEST(SmoothCut, Gap)
   EXPECT_EQ(cut.CountOff(), 5 * 10 * 8);
   EXPECT_TRUE(!GetCells(cut.Filter->GetOutput()) && !GetDistances(cut.Filter->GetOutput()));
   EXPECT_LT(open.Filter->GetNumberOfCoveredVoxels(), 0.96 * static_cast<double>(covered));
-}
-
-// On both sides of the gap, labels and values are those of the volume at rest. A smooth boundary of
-// a carved body moves with each side.
-TEST(SmoothCut, LabelsAndBoundary)
-{
-  auto volume = MakeVolume(Box);
-  AddLabels(volume); // the label changes between x = 5 and x = 6
-  const double planeX = 5.5;
-  Edited<vtkCutVolume> cut;
-  SetUpCut(cut, volume, planeX);
-  vtkNew<vtkSphere> sphere;
-  sphere->SetCenter(planeX, 5.0, 5.0);
-  const double radius = 2.3;
-  sphere->SetRadius(radius);
-  Edited<vtkCarveVolume> carve;
-  carve.Filter->SetInputConnection(cut.Filter->GetOutputPort());
-  carve.Filter->SetImplicitFunction(sphere);
-  carve.Filter->SmoothBoundaryOn();
-  const glm::dvec3 apart(2.0, 0, 0);
-  filterTesting::Deformed open;
-  open.Filter->SetInputConnection(carve.Filter->GetOutputPort());
-  open.Filter->SetDeformationData(MakeField(volume, planeX, -apart, apart));
-  filterTesting::Deformed still(volume, MakeField(volume, planeX, glm::dvec3(0), glm::dvec3(0)));
-  for (filterTesting::Deformed* one : { &open, &still })
-  {
-    one->Filter->AddCategoricalArray("label");
-    one->Filter->SetOutputSpacingModeToCustomSpacing();
-    one->Filter->SetCustomSpacing(0.25, 0.25, 0.25);
-  }
-  vtkImageData* output = open.Update();
-  vtkImageData* reference = still.Update();
-  auto* labels = output->GetPointData()->GetArray("label");
-  auto* expected = reference->GetPointData()->GetArray("label");
-  vtkIdType seen[2] = { 0, 0 };
-  for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
-  {
-    const glm::dvec3 point = GetPoint(output, id);
-    const bool isLow = point.x < planeX;
-    glm::dvec3 rest = isLow ? point + apart : point - apart;
-    // Distances are linear in each cell, so the sphere is right to less than 1/4 voxel.
-    const double out = glm::length(rest - glm::dvec3(planeX, 5.0, 5.0)) - radius;
-    const bool isInSide = isLow ? rest.x < planeX : rest.x > planeX;
-    if (rest.x == planeX || std::abs(out) < 0.25 || !isInSide)
-    {
-      EXPECT_TRUE(isInSide || !open.IsCovered(id) || rest.x == planeX);
-      continue;
-    }
-    const bool isInVolume = rest.x >= Box[0] && rest.x <= Box[1];
-    EXPECT_EQ(open.IsCovered(id), isInVolume && out > 0.0);
-    if (open.IsCovered(id))
-    {
-      const vtkIdType there = reference->FindPoint(&rest.x);
-      EXPECT_EQ(labels->GetComponent(id, 0), expected->GetComponent(there, 0));
-      // Values are interpolated in single or in double precision, then rounded to shorts.
-      EXPECT_LE(
-        std::abs(open.GetValues()->GetComponent(id, 0) - still.GetValues()->GetComponent(there, 0)),
-        1.0);
-      ++seen[isLow ? 0 : 1];
-    }
-  }
-  EXPECT_TRUE(seen[0] > 1000 && seen[1] > 1000);
 }
 
 // Two lattices that meet at the cut and share no nodes.
