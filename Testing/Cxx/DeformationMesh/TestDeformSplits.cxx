@@ -180,15 +180,6 @@ TEST(DeformSplits, Slit)
   EXPECT_EQ(countEmpty(38), 0);
 }
 
-TEST(DeformSplits, OpenSplitsProperty)
-{
-  vtkNew<vtkDeformVolumeFilter> filter;
-  EXPECT_FALSE(filter->GetOpenSplits());
-  const vtkMTimeType time = filter->GetMTime();
-  filter->OpenSplitsOn();
-  EXPECT_GT(filter->GetMTime(), time);
-}
-
 } // namespace
 
 TEST(DeformSplits, PulledApart)

@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <sstream>
 
 using namespace meshChecks;
 
@@ -328,11 +327,3 @@ TEST(LatticeTetrahedraSource, Large)
 }
 
 } // namespace
-
-TEST(LatticeTetrahedraSource, Print)
-{
-  vtkNew<vtkLatticeTetrahedraSource> source;
-  std::ostringstream text;
-  source->Print(text);
-  EXPECT_TRUE(HasPart(text.str(), "NumberOfNodes: 13 13 13"));
-}

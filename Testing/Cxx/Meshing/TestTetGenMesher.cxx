@@ -15,7 +15,6 @@
 #include <vtkTypeInt64Array.h>
 #include <vtkUnsignedCharArray.h>
 
-#include <sstream>
 #include <string>
 
 using namespace meshChecks;
@@ -378,11 +377,3 @@ TEST(TetGenMesher, Pieces)
 }
 
 } // namespace
-
-TEST(TetGenMesher, Print)
-{
-  vtkNew<vtkTetGenMesher> mesher;
-  std::ostringstream text;
-  mesher->Print(text);
-  EXPECT_TRUE(HasPart(text.str(), "RadiusEdgeRatio: 1.414"));
-}

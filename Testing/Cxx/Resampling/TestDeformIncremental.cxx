@@ -96,16 +96,4 @@ TEST(DeformIncremental, WrittenOutput)
   EXPECT_TRUE(AreEqual(deformed.Update(), expected.Update()));
 }
 
-// The defaults of the property and of the report, and the modified time.
-TEST(DeformIncremental, IncrementalProperty)
-{
-  vtkNew<vtkDeformVolumeFilter> filter;
-  EXPECT_TRUE(filter->GetIncremental());
-  EXPECT_EQ(GetReported(filter, "Bricks of the volume"), 0);
-  EXPECT_EQ(GetReported(filter, "Bricks resampled"), 0);
-  const vtkMTimeType time = filter->GetMTime();
-  filter->IncrementalOff();
-  EXPECT_GT(filter->GetMTime(), time);
-}
-
 } // namespace

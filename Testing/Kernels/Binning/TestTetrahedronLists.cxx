@@ -2,7 +2,7 @@
 // The lists of the tetrahedra in each tile, compared with lists that the host makes tile by tile.
 // Tests misuse, limits, and that results do not depend on the size of work-groups. With a given
 // size of work-groups, CPUs make the lists as other devices do.
-#include "Error.h"
+#include "CaughtError.h"
 #include "MemoryBudget.h"
 #include "Tetrahedron.h"
 #include "TetrahedronLists.h"
@@ -257,18 +257,10 @@ protected:
       [](std::size_t sum, const std::vector<int>& list) { return sum + list.size(); });
   }
 
-  std::string GetError(const ListCase& c)
+  std::string GetListError(const ListCase& c)
   {
-    try
-    {
-      std::int64_t inverted = 0;
-      this->Make(c, inverted);
-    }
-    catch (const Error& error)
-    {
-      return error.what();
-    }
-    return "";
+    std::int64_t inverted = 0;
+    return GetError([&] { this->Make(c, inverted); });
   }
 
   WorkDevice Device;
@@ -295,9 +287,9 @@ TEST_F(TetrahedronListing, MisuseLeavesThemUsable)
     this->Make(stretched, inverted);
     EXPECT_EQ(this->Overstretched, 2);
     this->Device.SetAllocationLimit(1500); // less than one box per tetrahedron
-    EXPECT_NE(this->GetError(good).find("in one allocation"), std::string::npos);
+    EXPECT_NE(this->GetListError(good).find("in one allocation"), std::string::npos);
     this->Device.SetAllocationLimit(0);
-    EXPECT_EQ(this->GetError(good), "");
+    EXPECT_EQ(this->GetListError(good), "");
   }
   this->ExpectEqualsReference(good);
 }
@@ -311,7 +303,7 @@ TEST_F(TetrahedronListing, ListsThatAreTooLong)
     large.AddLarge();
   }
   this->Device.SetWorkGroupSize(64);
-  EXPECT_NE(this->GetError(large).find("too large for mesh rasterization"), std::string::npos);
+  EXPECT_NE(this->GetListError(large).find("too large for mesh rasterization"), std::string::npos);
   ListCase small({ { 0, 0, 0 } }, { { 100, 50, 50 } });
   small.AddRandom(20, 20, 1);
   this->ExpectEqualsReference(small);
