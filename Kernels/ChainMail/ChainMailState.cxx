@@ -89,11 +89,9 @@ void ChainMailState::Continue() const
 
 void ChainMailState::SetLimits(const ChainMailLimits& limits)
 {
-  this->Limits = this->Device.Send(
-    limits.Limits.data(), limits.Limits.size() * sizeof(std::int32_t), this->Limits);
-  this->Weights = this->Device.Send(limits.Weights.data(), limits.Weights.size(), this->Weights);
-  this->Reciprocals = this->Device.Send(
-    limits.Reciprocals.data(), limits.Reciprocals.size() * sizeof(float), this->Reciprocals);
+  this->Device.Send(this->Limits, limits.Limits);
+  this->Device.Send(this->Weights, limits.Weights);
+  this->Device.Send(this->Reciprocals, limits.Reciprocals);
 }
 
 void ChainMailState::ChangeBytes(

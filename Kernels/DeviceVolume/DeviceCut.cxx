@@ -238,8 +238,8 @@ void DeviceCut::Send(const OpenCLContext& context, const cl::CommandQueue& queue
 }
 
 void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
-  const KernelParameters& p, const VolumeChunk& chunk, const Inputs& inputs,
-  const std::vector<unsigned char>& wanted)
+  const KernelParameters& p, const VolumeChunk& chunk, const cl::Program& mapping,
+  const MappingSetter& set, const cl::Buffer& active, const std::vector<unsigned char>& wanted)
 {
   // Each chunk has its own states, so vertices between two chunks are processed for both.
   const auto row = [&](int z)
@@ -255,8 +255,8 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   if (!this->StencilsCurrent)
   {
     context.Launch(queue,
-      MakeKernel(inputs.Program, "FindCutStencils", inputs.State, inputs.Active, this->Rows,
-        this->Vertices, this->Stencils, begin, end, p),
+      MakeKernel(mapping, "FindCutStencils", chunk.State, active, this->Rows, this->Vertices,
+        this->Stencils, begin, end, p),
       items, cl::NDRange(group));
   }
   const bool some = this->StencilsCurrent && !wanted.empty();
@@ -265,11 +265,9 @@ void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
     Reserve(context, this->Wanted, wanted.size());
     queue.enqueueWriteBuffer(this->Wanted, CL_TRUE, 0, wanted.size(), wanted.data());
   }
-  cl::Kernel kernel(inputs.Program, "FindCutPositions");
-  // Any buffer may replace a missing buffer.
-  deformvolume::SetArguments(kernel, inputs.SetMapping(kernel, chunk), inputs.State, this->Vertices,
-    this->Stencils, this->Positions, some ? this->Wanted : this->Stencils, cl_int{ some }, begin,
-    end, p);
+  cl::Kernel kernel(mapping, "FindCutPositions");
+  deformvolume::SetArguments(kernel, set(kernel, chunk), chunk.State, this->Vertices,
+    this->Stencils, this->Positions, this->Wanted, cl_int{ some }, begin, end, p);
   context.Launch(queue, kernel, items, cl::NDRange(group));
 }
 

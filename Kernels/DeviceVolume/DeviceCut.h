@@ -32,19 +32,13 @@ public:
   /// Makes the next update compute the stencils, since states or active tetrahedra have changed.
   void InvalidateStencils() { this->StencilsCurrent = false; }
 
-  /// The data on which the positions of the copies in a chunk depend.
-  struct Inputs
-  {
-    cl::Program Program; // of the deformation mapping
-    const MappingSetter& SetMapping;
-    cl::Buffer State;
-    cl::Buffer Active;
-  };
-  /// Computes the positions of the copies. p: parameters of the chunk. wanted: for each brick,
-  /// whether positions of its vertices may have changed; empty: all may have changed. If the
-  /// stencils must be computed, all positions are computed. Call Finish() after all chunks.
+  /// Computes the positions of the copies in a chunk. p: parameters of the chunk. mapping: the
+  /// program of the deformation mapping. active: the active tetrahedra; may be null. wanted: for
+  /// each brick, whether positions of its vertices may have changed; empty: all may have changed.
+  /// If the stencils must be computed, all positions are computed. Call Finish() after all chunks.
   void Update(OpenCLContext& context, const cl::CommandQueue& queue, const KernelParameters& p,
-    const VolumeChunk& chunk, const Inputs& inputs, const std::vector<unsigned char>& wanted);
+    const VolumeChunk& chunk, const cl::Program& mapping, const MappingSetter& set,
+    const cl::Buffer& active, const std::vector<unsigned char>& wanted);
   void Finish() { this->StencilsCurrent = true; }
 
   ///@{

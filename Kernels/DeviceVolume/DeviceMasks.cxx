@@ -29,7 +29,7 @@ std::vector<Extent> DeviceMasks::SetBlanked(
 {
   std::vector<Extent> changes =
     this->Blanked.Set(this->Context, this->Queue, this->Size, this->Chunks, blanked, bits, written);
-  this->States.ChangeSources(changes);
+  this->States.ChangeVertices(changes);
   return changes;
 }
 
@@ -52,26 +52,19 @@ std::vector<Extent> DeviceMasks::SetBoundaryDistances(
 {
   std::vector<Extent> changes = this->Distances.Set(this->Context, this->Queue, this->Size,
     this->Chunks, reinterpret_cast<const unsigned char*>(distances), 255, written);
-  this->States.ChangeSources(changes);
+  this->States.ChangeVertices(changes);
   return changes;
 }
 
-std::vector<Extent> DeviceMasks::SetCut(
-  const unsigned char* crossed, const float* distances, bool hasRoom)
+std::vector<Extent> DeviceMasks::SetCut(const unsigned char* crossed, const float* distances)
 {
-  if (crossed && !hasRoom)
-  {
-    throw Error("A smooth cut needs six slices of the volume in one allocation, but the device "
-                "allows at most " +
-      std::to_string(this->AllocationLimit) + " bytes. Use a smaller volume or another device.");
-  }
   std::vector<Extent> changes =
     this->Cut.Set(this->Context, this->Queue, this->Grid, crossed, distances);
   if (this->HasCut())
   {
     this->Bricks.Halo = BrickGrid::HaloOfCuts; // never reset, since another cut may follow
   }
-  this->States.ChangeSources(changes);
+  this->States.ChangeVertices(changes);
   this->Resampled.ChangeVertices(changes);
   return changes;
 }

@@ -41,9 +41,8 @@ public:
   std::vector<Extent> SetActive(const unsigned char* active, const PointRanges* written);
   std::vector<Extent> SetBoundaryDistances(const float* distances, const PointRanges* written);
   ///@}
-  /// Set a smooth cut (DeviceCut::Set()). hasRoom: whether chunks have the planes that it needs.
-  /// Returns the boxes of vertices whose entries have changed. Throws Error without room.
-  std::vector<Extent> SetCut(const unsigned char* crossed, const float* distances, bool hasRoom);
+  /// Set a smooth cut (DeviceCut::Set()). Returns the boxes of vertices whose entries have changed.
+  std::vector<Extent> SetCut(const unsigned char* crossed, const float* distances);
   /// Excludes bridges over a split of the mesh. numbers: see ResampledMask::SetCoincidentNodes().
   void SetCoincidentNodes(const std::vector<std::int32_t>& numbers);
   /// Excludes the cells that the boundary of the deformation mesh, or of the field, crosses.
@@ -58,26 +57,12 @@ public:
   bool HasDistances() const { return this->Distances.HasBuffers(); }
   bool HasCut() const { return this->Cut.IsOn(); }
   bool HasBoundary() const { return this->Resampled.HasBoundary(); }
-  ///@{
-  /// Returns the mask of a chunk as an argument of kernels. other: any buffer, which replaces a
-  /// missing mask: not all drivers accept a null pointer.
-  const cl::Buffer& GetActive(const VolumeChunk& chunk, const cl::Buffer& other) const
+  /// Returns the active tetrahedra of a chunk that are resampled by their vertices. Null: all.
+  const cl::Buffer& GetActive(const VolumeChunk& chunk) const
   {
-    return this->Resampled.IsOn() ? chunk.ResampledTetrahedra : this->GetGivenActive(chunk, other);
+    return this->Resampled.IsOn() ? chunk.ResampledTetrahedra : chunk.Active;
   }
-  const cl::Buffer& GetGivenActive(const VolumeChunk& chunk, const cl::Buffer& other) const
-  {
-    return this->HasGivenActive() ? chunk.Active : other;
-  }
-  const cl::Buffer& GetBlanked(const VolumeChunk& chunk, const cl::Buffer& other) const
-  {
-    return this->HasBlanked() ? chunk.Blanked : other;
-  }
-  const cl::Buffer& GetDistances(const VolumeChunk& chunk, const cl::Buffer& other) const
-  {
-    return this->HasDistances() ? chunk.Distances : other;
-  }
-  ///@}
+
   DeviceCut& GetCut() { return this->Cut; }
   const DeviceCut& GetCut() const { return this->Cut; }
   ResampledMask& GetResampledMask() { return this->Resampled; }

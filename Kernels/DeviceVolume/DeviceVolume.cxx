@@ -42,6 +42,7 @@ DeviceVolume::DeviceVolume(OpenCLContext& context, const cl::CommandQueue& queue
   bool withLinks)
   : Context(context)
   , Queue(queue)
+  , AllocationLimit(allocationLimit)
   , Grid(voxelGrid)
   , Bricks(voxelGrid)
   , Arrays(context, queue, this->Bricks.Size, allocationLimit, this->Chunks)
@@ -101,7 +102,13 @@ void DeviceVolume::SetRuns(const VertexRuns& runs)
 
 std::vector<Extent> DeviceVolume::SetCut(const unsigned char* crossed, const float* distances)
 {
-  return this->Masks.SetCut(crossed, distances, this->HasRoomForCuts || this->Chunks.size() == 1);
+  if (crossed && !this->HasRoomForCuts && this->Chunks.size() > 1)
+  {
+    throw Error("A smooth cut needs six slices of the volume in one allocation, but the device "
+                "allows at most " +
+      std::to_string(this->AllocationLimit) + " bytes. Use a smaller volume or another device.");
+  }
+  return this->Masks.SetCut(crossed, distances);
 }
 
 void DeviceVolume::SetBoundary(const MeshBoundary& boundary, bool isField)
@@ -120,17 +127,13 @@ std::vector<Extent> DeviceVolume::UpdateResampledMask(
   {
     return changes;
   }
-  const cl::Buffer& other = this->RestPositions; // a kernel's argument in place of a missing buffer
   const DeviceCut& cut = this->Masks.GetCut();
   const cl::Program program =
     GetResampledMaskProgram(this->Context, mapping, cut.IsOn(), this->HasTurnedAxes());
   for (VolumeChunk& chunk : this->Chunks)
   {
     mask.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
-      { program, set, this->HasRuns() ? this->Mapping.GetRecords().GetOwners() : other, tetrahedra,
-        this->Masks.GetGivenActive(chunk, other), this->Masks.HasGivenActive(), other,
-        cut.IsOn() ? cut.GetRows() : other, cut.IsOn() ? cut.GetVertices() : other },
-      changes);
+      { program, set, this->Mapping.GetRecords().GetOwners(), tetrahedra, cut }, changes);
   }
   mask.Finish();
   this->States.ChangeCells(changes);
@@ -161,7 +164,7 @@ KernelParameters DeviceVolume::GetParameters(const VolumeChunk& chunk) const
 
 void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll, const MappingSetter& set)
 {
-  if (this->States.AreCurrent())
+  if (this->States.IsCurrent())
   {
     return;
   }
@@ -174,14 +177,10 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll, const 
     this->States.Release(this->Chunks);
     return;
   }
-  // A kernel's argument in place of a missing buffer: not all drivers accept a null pointer.
-  const cl::Buffer& other = this->RestPositions;
   for (VolumeChunk& chunk : this->Chunks)
   {
     this->States.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
-      { mapping, set, this->Masks.GetBlanked(chunk, other), this->Masks.HasBlanked(),
-        this->Masks.GetActive(chunk, other), this->Masks.GetDistances(chunk, other),
-        cut.IsOn() ? cut.GetRows() : other, cut.IsOn() ? cut.GetVertices() : other });
+      { mapping, set, this->Masks.GetActive(chunk), cut });
   }
   this->States.Finish();
 }
@@ -205,9 +204,8 @@ void DeviceVolume::UpdateCut(
   }
   for (const VolumeChunk& chunk : this->Chunks)
   {
-    cut.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk,
-      { mapping, set, this->GetState(chunk), this->Masks.GetActive(chunk, this->RestPositions) },
-      wanted);
+    cut.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk, mapping, set,
+      this->Masks.GetActive(chunk), wanted);
   }
   cut.Finish();
 }

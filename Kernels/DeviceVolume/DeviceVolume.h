@@ -115,12 +115,6 @@ public:
   void UpdateCut(
     const cl::Program& mapping, const std::vector<cl_uint>* bricks, const MappingSetter& set);
   void InvalidateState() { this->States.Invalidate(); }
-  /// Returns the states of a chunk, or any buffer if there are none.
-  const cl::Buffer& GetState(const VolumeChunk& chunk) const
-  {
-    return chunk.State() ? chunk.State : this->RestPositions;
-  }
-
   /// Returns the parameters of a launch over a whole chunk.
   KernelParameters GetParameters(const VolumeChunk& chunk) const;
 
@@ -129,6 +123,7 @@ public:
 private:
   OpenCLContext& Context;
   cl::CommandQueue Queue;
+  std::uint64_t AllocationLimit;
   VoxelGrid Grid;
   BrickGrid Bricks;
   bool HasRoomForCuts = true;

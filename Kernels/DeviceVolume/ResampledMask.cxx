@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ResampledMask.h"
 
+#include "DeviceCut.h"
 #include "FiveTetrahedra.h"
 #include "HostMemory.h"
 #include "KernelMaking.h"
@@ -43,32 +44,6 @@ void ResampledMask::SetBoundary(bool has)
   this->Invalidate();
 }
 
-void ResampledMask::Invalidate()
-{
-  this->Current = !this->IsOn();
-  this->Known = false;
-}
-
-void ResampledMask::ChangeVertices(const std::vector<Extent>& vertices)
-{
-  this->Vertices.insert(this->Vertices.end(), vertices.begin(), vertices.end());
-  this->Current = this->Current && (vertices.empty() || !this->IsOn());
-}
-
-void ResampledMask::ChangeCells(const std::vector<Extent>& cells)
-{
-  this->Cells.insert(this->Cells.end(), cells.begin(), cells.end());
-  this->Current = this->Current && (cells.empty() || !this->IsOn());
-}
-
-void ResampledMask::Finish()
-{
-  this->Current = true;
-  this->Known = true;
-  this->Vertices.clear();
-  this->Cells.clear();
-}
-
 void ResampledMask::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   const KernelParameters& p, VolumeChunk& chunk, const Inputs& inputs, std::vector<Extent>& changes)
 {
@@ -96,12 +71,10 @@ void ResampledMask::Update(OpenCLContext& context, const cl::CommandQueue& queue
   const cl::Buffer changed(context.GetContext(), CL_MEM_READ_WRITE, atOnce * sizeof(cl_uint));
   const QueueGuard guard(queue);
   cl::Kernel kernel(inputs.Program, "UpdateResampledMask");
-  SetArguments(kernel, inputs.SetMapping(kernel, chunk), inputs.Owners,
-    inputs.Tetrahedra() ? inputs.Tetrahedra : inputs.Other,
-    this->HasCoincidentNodes() ? this->CoincidentNodes : inputs.Other,
-    cl_int{ this->HasCoincidentNodes() }, this->WithBoundary ? chunk.Boundary : inputs.Other,
-    cl_int{ this->WithBoundary }, inputs.Active, cl_int{ inputs.HasActive }, inputs.CutRows,
-    inputs.CutVertices, chunk.ResampledTetrahedra, changed, list, p);
+  SetArguments(kernel, inputs.SetMapping(kernel, chunk), inputs.Owners, inputs.Tetrahedra,
+    this->CoincidentNodes, cl_int{ this->HasCoincidentNodes() }, chunk.Boundary,
+    cl_int{ this->WithBoundary }, chunk.Active, cl_int{ chunk.Active() != nullptr },
+    inputs.Cut.GetRows(), inputs.Cut.GetVertices(), chunk.ResampledTetrahedra, changed, list, p);
   std::vector<cl_uint> flags;
   VertexCuboids::ForAll(context, queue, cuboids, list,
     [&](const VertexCuboids::Launch& launch, std::size_t begin, std::size_t count)

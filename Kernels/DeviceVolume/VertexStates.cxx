@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VertexStates.h"
 
+#include "DeviceCut.h"
 #include "HostMemory.h"
 #include "KernelMaking.h"
 #include "VertexCuboids.h"
@@ -10,32 +11,6 @@
 
 namespace deformvolume
 {
-
-void VertexStates::Invalidate()
-{
-  this->Current = false;
-  this->Known = false;
-}
-
-void VertexStates::ChangeSources(const std::vector<Extent>& vertices)
-{
-  this->Sources.insert(this->Sources.end(), vertices.begin(), vertices.end());
-  this->Current = this->Current && vertices.empty();
-}
-
-void VertexStates::ChangeCells(const std::vector<Extent>& cells)
-{
-  this->Cells.insert(this->Cells.end(), cells.begin(), cells.end());
-  this->Current = this->Current && cells.empty();
-}
-
-void VertexStates::Finish()
-{
-  this->Current = true;
-  this->Known = true;
-  this->Sources.clear();
-  this->Cells.clear();
-}
 
 void VertexStates::Release(std::vector<VolumeChunk>& chunks)
 {
@@ -55,11 +30,11 @@ void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   const bool all = !this->Known || GetMemory(chunk.State) != bytes;
   Reserve(context, chunk.State, bytes);
   const VertexCuboids cuboids(p);
-  const std::vector<cl_uint> sources = all ? cuboids.GetAll() : cuboids.Find(this->Sources, 0);
+  const std::vector<cl_uint> sources = all ? cuboids.GetAll() : cuboids.Find(this->Vertices, 0);
   // The state of a vertex depends on the cells around it and on their vertices. A cell has the
   // index of its first vertex.
   const std::vector<cl_uint> vertices =
-    all ? sources : JoinLists(cuboids.Find(this->Sources, 1), cuboids.Find(this->Cells, 1));
+    all ? sources : JoinLists(cuboids.Find(this->Vertices, 1), cuboids.Find(this->Cells, 1));
   if (vertices.empty())
   {
     return;
@@ -70,12 +45,12 @@ void VertexStates::Update(OpenCLContext& context, const cl::CommandQueue& queue,
     context.GetContext(), CL_MEM_READ_WRITE, atOnce * VertexCuboids::NumberOfVertices);
   const QueueGuard guard(queue);
   cl::Kernel mark(inputs.Mapping, "MarkSources");
-  SetArguments(mark, inputs.SetMapping(mark, chunk), inputs.Blanked, cl_int{ inputs.HasBlanked },
-    inputs.Distances, chunk.State, list, p);
+  SetArguments(mark, inputs.SetMapping(mark, chunk), chunk.Blanked,
+    cl_int{ chunk.Blanked() != nullptr }, chunk.Distances, chunk.State, list, p);
   VertexCuboids::ForAll(context, queue, sources, list,
     [&](const VertexCuboids::Launch& launch, std::size_t, std::size_t) { launch(mark); });
   const cl::Kernel find = MakeKernel(inputs.Mapping, "MarkVertices", chunk.State, inputs.Active,
-    inputs.CutRows, inputs.CutVertices, marked, list, p);
+    inputs.Cut.GetRows(), inputs.Cut.GetVertices(), marked, list, p);
   const cl::Kernel store = MakeKernel(inputs.Mapping, "StoreStates", marked, chunk.State, list, p);
   VertexCuboids::ForAll(context, queue, vertices, list,
     [&](const VertexCuboids::Launch& launch, std::size_t, std::size_t)

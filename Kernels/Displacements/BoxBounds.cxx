@@ -24,8 +24,8 @@ std::vector<DisplacementBounds> FindBoxBounds(WorkDevice& device, const cl::Buff
   {
     return {};
   }
-  const cl::Buffer boxesThere =
-    device.Send(boxes.data(), boxes.size() * sizeof(Extent), cl::Buffer());
+  cl::Buffer boxesThere;
+  device.Send(boxesThere, boxes);
   OpenCLContext& context = device.GetContext();
   const cl::CommandQueue& queue = device.GetQueue();
   const std::size_t bytes = boxes.size() * sizeof(BoundsOfAxes);

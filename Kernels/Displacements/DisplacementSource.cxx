@@ -98,9 +98,7 @@ void DisplacementSource::SendTetrahedra(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra, std::size_t numberOfNodes)
 {
   this->NumberOfTetrahedra = numberOfTetrahedra;
-  const std::vector<Tetrahedron> offsets = GetNodeOffsets(tetrahedra, numberOfTetrahedra);
-  this->Tetrahedra =
-    this->Device.Send(offsets.data(), numberOfTetrahedra * sizeof(Tetrahedron), this->Tetrahedra);
+  this->Device.Send(this->Tetrahedra, GetNodeOffsets(tetrahedra, numberOfTetrahedra));
   this->NumberOfNodes = numberOfNodes;
   this->MaxNumberOfNodes = numberOfNodes;
   if (this->Nodes.GetNumberOfPoints() != numberOfNodes)
@@ -513,8 +511,7 @@ cl_uint DisplacementSource::SetMappingArguments(cl::Kernel& kernel, const Volume
   }
 }
 
-cl_uint DisplacementSource::SetPointArguments(
-  cl::Kernel& kernel, cl_uint argument, const cl::Buffer& other) const
+cl_uint DisplacementSource::SetPointArguments(cl::Kernel& kernel, cl_uint argument) const
 {
   const bool mesh = this->HasMesh();
   cl_int4 dimensions = { { 0, 0, 0, 0 } };
@@ -522,7 +519,7 @@ cl_uint DisplacementSource::SetPointArguments(
   {
     dimensions.s[axis] = this->Field.Dimensions[axis];
   }
-  return SetArguments(kernel, argument, mesh ? this->Tetrahedra : other,
+  return SetArguments(kernel, argument, this->Tetrahedra,
     mesh ? this->Nodes.Get() : this->FieldVectors.Get(), dimensions);
 }
 

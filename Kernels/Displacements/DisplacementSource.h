@@ -97,8 +97,8 @@ public:
 
   /// Sets three arguments, starting at index `argument`: tetrahedra, displacements of points, and
   /// the dimensions of a field as four integers (0 for a mesh). Returns the index of the next
-  /// argument. other: any buffer, which replaces the tetrahedra for a field.
-  cl_uint SetPointArguments(cl::Kernel& kernel, cl_uint argument, const cl::Buffer& other) const;
+  /// argument.
+  cl_uint SetPointArguments(cl::Kernel& kernel, cl_uint argument) const;
 
   /// Finds the points that move each sub-brick of the volume. The volume must be one chunk.
   BrickPoints MakeBrickPoints() const;

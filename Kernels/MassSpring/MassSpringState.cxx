@@ -52,20 +52,18 @@ MassSpringState::MassSpringState(WorkDevice& device, const MassSpringNetwork& ne
   }
   text += ProgramText(MassSpringParameters_h) + MassSpringForces_cl + MassSpringMotion_cl;
   this->Program = context.GetProgram(text, KernelOptions);
-  const auto send = [&](const auto& values)
-  { return this->Fill(values.data(), values.size() * sizeof(values[0])); };
-  this->Tetrahedra = send(network.Tetrahedra);
-  this->Materials = send(network.Materials);
-  this->RestPoints = send(network.RestPoints);
-  this->Begins = send(network.Begins);
-  this->ForceIndices = send(network.ForceIndices);
-  this->Mobilities = send(network.Mobilities);
+  device.Send(this->Tetrahedra, network.Tetrahedra);
+  device.Send(this->Materials, network.Materials);
+  device.Send(this->RestPoints, network.RestPoints);
+  device.Send(this->Begins, network.Begins);
+  device.Send(this->ForceIndices, network.ForceIndices);
+  device.Send(this->Mobilities, network.Mobilities);
   const std::vector<float> zeros(this->NumberOfNodes * 3, 0.0F);
-  this->Displacements = send(zeros);
-  this->Velocities = send(zeros);
+  device.Send(this->Displacements, zeros);
+  device.Send(this->Velocities, zeros);
   const cl_int none = 0;
-  this->HasDiverged = this->Fill(&none, sizeof(none));
-  this->Inverted = this->Fill(&none, sizeof(none));
+  device.Send(this->HasDiverged, &none, sizeof(none));
+  device.Send(this->Inverted, &none, sizeof(none));
   Reserve(context, this->Forces,
     this->NumberOfPackets * 12 * static_cast<std::size_t>(network.Lanes) * sizeof(float));
   const auto nodes = static_cast<cl_uint>(this->NumberOfNodes);
@@ -77,28 +75,14 @@ MassSpringState::MassSpringState(WorkDevice& device, const MassSpringNetwork& ne
       this->Displacements, this->Inverted, static_cast<cl_uint>(this->NumberOfPackets));
   this->AddForcesKernel = MakeKernel(
     this->Program, "AddForces", this->Begins, this->ForceIndices, this->Forces, this->Sums, nodes);
-  // There are no loads yet: pass another buffer in their place.
   this->MoveNodesKernel = MakeKernel(this->Program, "MoveNodes", this->Begins, this->ForceIndices,
-    this->Forces, this->Mobilities, this->Velocities, this->Velocities, this->Displacements,
+    this->Forces, this->Mobilities, this->Loads, this->Velocities, this->Displacements,
     this->HasDiverged, MassSpringStep{}, cl_int{ 0 });
   this->MoveHandlesKernel = cl::Kernel(this->Program, "MoveHandles");
   SetArguments(this->MoveHandlesKernel, 1, this->Velocities, this->Displacements);
   this->WriteOutputKernel = cl::Kernel(this->Program, "WriteOutput");
   this->WriteOutputKernel.setArg(0, this->Displacements);
   this->WriteOutputKernel.setArg(3, nodes * 3);
-}
-
-cl::Buffer MassSpringState::Fill(const void* data, std::size_t bytes)
-{
-  cl::Buffer buffer;
-  Reserve(this->Device.GetContext(), buffer, bytes);
-  this->Write(buffer, data, bytes);
-  return buffer;
-}
-
-void MassSpringState::Write(const cl::Buffer& buffer, const void* data, std::size_t bytes)
-{
-  deformvolume::Write(this->Device.GetQueue(), buffer, 0, bytes, data);
 }
 
 std::vector<float> MassSpringState::Read(const cl::Buffer& buffer)
@@ -111,7 +95,7 @@ std::vector<float> MassSpringState::Read(const cl::Buffer& buffer)
 
 void MassSpringState::SetMobilities(const std::vector<float>& mobilities)
 {
-  this->Write(this->Mobilities, mobilities.data(), mobilities.size() * sizeof(float));
+  this->Device.Send(this->Mobilities, mobilities);
 }
 
 void MassSpringState::SetLoads(const std::vector<glm::dvec3>& forces)
@@ -124,7 +108,7 @@ void MassSpringState::SetLoads(const std::vector<glm::dvec3>& forces)
     {
       values[i] = static_cast<float>(forces[i / 3][static_cast<int>(i % 3)]);
     }
-    this->Loads = this->Device.Send(values.data(), values.size() * sizeof(float), this->Loads);
+    this->Device.Send(this->Loads, values);
     this->MoveNodesKernel.setArg(4, this->Loads);
   }
   this->MoveNodesKernel.setArg(9, cl_int{ this->HasLoads });
@@ -135,8 +119,7 @@ void MassSpringState::SetHandles(const std::vector<MassSpringHandle>& handles)
   this->NumberOfHandles = handles.size();
   if (!handles.empty())
   {
-    this->Handles =
-      this->Device.Send(handles.data(), handles.size() * sizeof(MassSpringHandle), this->Handles);
+    this->Device.Send(this->Handles, handles);
     this->MoveHandlesKernel.setArg(0, this->Handles);
     this->MoveHandlesKernel.setArg(5, static_cast<cl_uint>(handles.size()));
   }
@@ -144,12 +127,12 @@ void MassSpringState::SetHandles(const std::vector<MassSpringHandle>& handles)
 
 void MassSpringState::SetDisplacements(const std::vector<float>& values)
 {
-  this->Write(this->Displacements, values.data(), values.size() * sizeof(float));
+  this->Device.Send(this->Displacements, values);
 }
 
 void MassSpringState::SetVelocities(const std::vector<float>& values)
 {
-  this->Write(this->Velocities, values.data(), values.size() * sizeof(float));
+  this->Device.Send(this->Velocities, values);
 }
 
 std::vector<float> MassSpringState::ComputeForces()
@@ -181,7 +164,7 @@ bool MassSpringState::TakeDivergence()
   if (hasDiverged != 0)
   {
     const cl_int none = 0;
-    this->Write(this->HasDiverged, &none, sizeof(none));
+    this->Device.Send(this->HasDiverged, &none, sizeof(none));
   }
   return hasDiverged != 0;
 }
@@ -189,7 +172,7 @@ bool MassSpringState::TakeDivergence()
 std::int64_t MassSpringState::CountInverted()
 {
   cl_int count = 0;
-  this->Write(this->Inverted, &count, sizeof(count));
+  this->Device.Send(this->Inverted, &count, sizeof(count));
   this->Device.Launch(this->CountInvertedKernel, this->NumberOfPackets);
   this->Device.GetQueue().enqueueReadBuffer(this->Inverted, CL_TRUE, 0, sizeof(count), &count);
   return count;

@@ -71,8 +71,6 @@ public:
 
 private:
   std::vector<float> Read(const cl::Buffer& buffer);
-  void Write(const cl::Buffer& buffer, const void* data, std::size_t bytes);
-  cl::Buffer Fill(const void* data, std::size_t bytes);
 
   WorkDevice& Device;
   std::size_t NumberOfNodes;

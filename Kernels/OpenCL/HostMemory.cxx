@@ -36,15 +36,28 @@ CopiedBox MakeBox(const Extent& whole, const Extent& part, std::size_t bytes, co
   return { { { bytes * size(0), size(1), size(2) } }, locate(whole), locate(held) };
 }
 
-void WriteStaged(StagedCopies& staged, const cl::CommandQueue& queue, const cl::Buffer& buffer,
-  const CopiedBox& box, const void* data)
+void Check(cl_int error)
 {
-  // The data are never written to.
-  const cl_int error = staged.Copy(queue, buffer, box, const_cast<void*>(data), false);
   if (error != CL_SUCCESS)
   {
-    throw cl::Error(error, "copying to the device");
+    throw cl::Error(error, "copying to or from the device");
   }
+}
+
+// Begins to copy a box from a buffer to memory (reads), or from memory to a buffer.
+PendingCopy BeginToCopy(const cl::CommandQueue& queue, const cl::Buffer& buffer,
+  const CopiedBox& box, void* memory, bool reads)
+{
+  StagedCopies* const staged = FindStagedCopies(queue, box.GetBytes());
+  if (staged && reads)
+  {
+    return PendingCopy([=] { return staged->Copy(queue, buffer, box, memory, true); });
+  }
+  // The next commands of the queue may use the buffer, so a staged copy to it is made at once.
+  cl_event done = nullptr;
+  Check(staged ? staged->Copy(queue, buffer, box, memory, false)
+               : EnqueueCopy(queue(), buffer(), box, memory, reads, &done));
+  return PendingCopy(cl::Event(done));
 }
 
 } // namespace
@@ -129,67 +142,34 @@ PendingCopy BeginToRead(
 PendingCopy BeginToReadRange(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   std::uint64_t offset, std::uint64_t bytes, void* memory)
 {
-  if (StagedCopies* const staged = FindStagedCopies(queue, bytes))
-  {
-    return PendingCopy([=]
-      { return staged->Copy(queue, buffer, CopiedBox::MakeRange(offset, bytes), memory, true); });
-  }
-  cl::Event done;
-  queue.enqueueReadBuffer(buffer, CL_FALSE, offset, bytes, memory, nullptr, &done);
-  return PendingCopy(done);
+  return BeginToCopy(queue, buffer, CopiedBox::MakeRange(offset, bytes), memory, true);
 }
 
 PendingCopy BeginToReadBox(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   const Extent& whole, const Extent& part, std::size_t bytes, void* memory, const Extent& held)
 {
-  const CopiedBox box = MakeBox(whole, part, bytes, held);
-  if (StagedCopies* const staged = FindStagedCopies(queue, box.GetBytes()))
-  {
-    return PendingCopy([=] { return staged->Copy(queue, buffer, box, memory, true); });
-  }
-  cl::Event done;
-  queue.enqueueReadBufferRect(buffer, CL_FALSE, box.OnDevice.Origin, box.OnHost.Origin, box.Size,
-    box.OnDevice.Row, box.OnDevice.Plane, box.OnHost.Row, box.OnHost.Plane, memory, nullptr, &done);
-  return PendingCopy(done);
+  return BeginToCopy(queue, buffer, MakeBox(whole, part, bytes, held), memory, true);
 }
 
 void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_t offset,
   std::uint64_t bytes, const void* data)
 {
-  StagedCopies* const staged = FindStagedCopies(queue, bytes);
-  if (!staged)
-  {
-    queue.enqueueWriteBuffer(buffer, CL_TRUE, offset, bytes, data);
-    return;
-  }
-  WriteStaged(*staged, queue, buffer, CopiedBox::MakeRange(offset, bytes), data);
+  BeginToWrite(queue, buffer, offset, bytes, data).Check();
 }
 
+// The following copies do not write to the data.
 PendingCopy BeginToWrite(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   std::uint64_t offset, std::uint64_t bytes, const void* data)
 {
-  if (StagedCopies* const staged = FindStagedCopies(queue, bytes))
-  {
-    WriteStaged(*staged, queue, buffer, CopiedBox::MakeRange(offset, bytes), data);
-    return PendingCopy(cl::Event());
-  }
-  cl::Event done;
-  queue.enqueueWriteBuffer(buffer, CL_FALSE, offset, bytes, data, nullptr, &done);
-  return PendingCopy(done);
+  return BeginToCopy(
+    queue, buffer, CopiedBox::MakeRange(offset, bytes), const_cast<void*>(data), false);
 }
 
 void WriteBox(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Extent& whole,
   const Extent& part, std::size_t bytes, const void* memory, const Extent& held)
 {
-  const CopiedBox box = MakeBox(whole, part, bytes, held);
-  StagedCopies* const staged = FindStagedCopies(queue, box.GetBytes());
-  if (!staged)
-  {
-    queue.enqueueWriteBufferRect(buffer, CL_TRUE, box.OnDevice.Origin, box.OnHost.Origin, box.Size,
-      box.OnDevice.Row, box.OnDevice.Plane, box.OnHost.Row, box.OnHost.Plane, memory);
-    return;
-  }
-  WriteStaged(*staged, queue, buffer, box, memory);
+  BeginToCopy(queue, buffer, MakeBox(whole, part, bytes, held), const_cast<void*>(memory), false)
+    .Check();
 }
 
 cl_int WaitFor(cl_event event) noexcept
@@ -219,11 +199,7 @@ cl_int PendingCopy::Finish()
 
 void PendingCopy::Check()
 {
-  const cl_int error = this->Finish();
-  if (error != CL_SUCCESS)
-  {
-    throw cl::Error(error, "copying to or from the device");
-  }
+  deformvolume::Check(this->Finish());
 }
 
 void PendingCopies::Check()

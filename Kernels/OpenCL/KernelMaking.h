@@ -4,15 +4,38 @@
 
 #include "OpenCLContext.h"
 
+#include <type_traits>
+
 namespace deformvolume
 {
 
 /// Sets consecutive arguments of a kernel. first: index of the first of them. Returns the index of
-/// the next argument.
+/// the next argument. A null buffer, which the kernel does not use, is replaced by another buffer
+/// among the arguments: not all drivers accept a null pointer.
 template <typename... Arguments>
 cl_uint SetArguments(cl::Kernel& kernel, cl_uint first, const Arguments&... arguments)
 {
-  (kernel.setArg(first++, arguments), ...);
+  const cl::Buffer* other = nullptr;
+  const auto find = [&](const auto& argument)
+  {
+    if constexpr (std::is_same_v<std::decay_t<decltype(argument)>, cl::Buffer>)
+    {
+      other = argument() ? &argument : other;
+    }
+  };
+  const auto set = [&](const auto& argument)
+  {
+    if constexpr (std::is_same_v<std::decay_t<decltype(argument)>, cl::Buffer>)
+    {
+      kernel.setArg(first++, argument() || !other ? argument : *other);
+    }
+    else
+    {
+      kernel.setArg(first++, argument);
+    }
+  };
+  (find(arguments), ...);
+  (set(arguments), ...);
   return first;
 }
 

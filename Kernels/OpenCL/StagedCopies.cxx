@@ -58,25 +58,9 @@ struct Transfer
 
   cl_int Enqueue(const CopiedBox& box, char* half, cl_event* done) const
   {
-    const CopiedBox::Bytes& size = box.Size;
-    const CopiedBox::Location& there = box.OnDevice;
-    if (box.IsRange())
-    {
-      return this->Reads ? clEnqueueReadBuffer(this->Queue, this->Buffer, CL_FALSE,
-                             there.GetOffset(), size[0], half, 0, nullptr, done)
-                         : clEnqueueWriteBuffer(this->Queue, this->Buffer, CL_FALSE,
-                             there.GetOffset(), size[0], half, 0, nullptr, done);
-    }
-    const CopiedBox::Bytes here{ { 0, 0, 0 } };
-    // CopiedBox::Join() leaves one plane with a pitch that may be invalid. 0 lets OpenCL compute
-    // it.
-    const std::size_t plane = size[2] > 1 || there.Origin[2] > 0 ? there.Plane : 0;
-    return this->Reads ? clEnqueueReadBufferRect(this->Queue, this->Buffer, CL_FALSE,
-                           there.Origin.data(), here.data(), size.data(), there.Row, plane, size[0],
-                           size[0] * size[1], half, 0, nullptr, done)
-                       : clEnqueueWriteBufferRect(this->Queue, this->Buffer, CL_FALSE,
-                           there.Origin.data(), here.data(), size.data(), there.Row, plane, size[0],
-                           size[0] * size[1], half, 0, nullptr, done);
+    CopiedBox portion = box;
+    portion.OnHost = { {}, box.Size[0], box.Size[0] * box.Size[1] };
+    return EnqueueCopy(this->Queue, this->Buffer, portion, half, this->Reads, done);
   }
 };
 
@@ -164,6 +148,29 @@ cl_int CopyPortions(const Transfer& transfer, const Portions& portions, std::siz
 }
 
 } // namespace
+
+cl_int EnqueueCopy(cl_command_queue queue, cl_mem buffer, const CopiedBox& box, void* memory,
+  bool reads, cl_event* done) noexcept
+{
+  const CopiedBox::Bytes& size = box.Size;
+  const CopiedBox::Location& there = box.OnDevice;
+  const CopiedBox::Location& here = box.OnHost;
+  if (box.IsRange())
+  {
+    void* const first = static_cast<char*>(memory) + here.GetOffset();
+    return reads ? clEnqueueReadBuffer(
+                     queue, buffer, CL_FALSE, there.GetOffset(), size[0], first, 0, nullptr, done)
+                 : clEnqueueWriteBuffer(
+                     queue, buffer, CL_FALSE, there.GetOffset(), size[0], first, 0, nullptr, done);
+  }
+  // CopiedBox::Join() leaves one plane with a pitch that may be invalid. 0 lets OpenCL compute it.
+  const std::size_t plane = size[2] > 1 || there.Origin[2] > 0 ? there.Plane : 0;
+  return reads
+    ? clEnqueueReadBufferRect(queue, buffer, CL_FALSE, there.Origin.data(), here.Origin.data(),
+        size.data(), there.Row, plane, here.Row, here.Plane, memory, 0, nullptr, done)
+    : clEnqueueWriteBufferRect(queue, buffer, CL_FALSE, there.Origin.data(), here.Origin.data(),
+        size.data(), there.Row, plane, here.Row, here.Plane, memory, 0, nullptr, done);
+}
 
 std::unique_ptr<StagedCopies> StagedCopies::Make(
   const cl::Context& context, const cl::Device& device)

@@ -12,6 +12,11 @@
 namespace deformvolume
 {
 
+/// Enqueues a copy of a box from a buffer to memory (`reads`) or from memory to a buffer. done: set
+/// to the event of the copy. Returns the OpenCL error code, or CL_SUCCESS.
+cl_int EnqueueCopy(cl_command_queue queue, cl_mem buffer, const CopiedBox& box, void* memory,
+  bool reads, cl_event* done) noexcept;
+
 /// Copies between any host memory and a device with memory of its own, in portions through double
 /// buffers of page-locked (pinned) memory. Drivers copy pageable memory at a fraction of the speed
 /// of the bus. While the bus transfers one half of a double buffer, the host copies the other half

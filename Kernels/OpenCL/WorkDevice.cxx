@@ -78,15 +78,10 @@ cl::Event WorkDevice::Launch(const cl::Kernel& kernel, std::size_t items)
     this->GetQueue(), kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group));
 }
 
-cl::Buffer WorkDevice::Send(const void* data, std::size_t bytes, const cl::Buffer& previous)
+void WorkDevice::Send(cl::Buffer& buffer, const void* data, std::size_t bytes)
 {
-  cl::Buffer buffer = previous;
-  if (GetMemory(buffer) != bytes)
-  {
-    buffer = cl::Buffer(this->GetContext().GetContext(), CL_MEM_READ_ONLY, bytes);
-  }
+  Reserve(this->GetContext(), buffer, bytes);
   Write(this->GetQueue(), buffer, 0, bytes, data);
-  return buffer;
 }
 
 } // namespace deformvolume

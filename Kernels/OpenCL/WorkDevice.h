@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace deformvolume
 {
@@ -53,9 +54,16 @@ public:
   /// kernel must ignore the work-items beyond `items`.
   cl::Event Launch(const cl::Kernel& kernel, std::size_t items);
 
-  /// Copies data to a buffer on the device, and returns when the copy is complete. Uses the
-  /// previous buffer if it has the size of the data, otherwise a new buffer.
-  cl::Buffer Send(const void* data, std::size_t bytes, const cl::Buffer& previous);
+  ///@{
+  /// Copies data to a buffer on the device, and returns when the copy is complete. A buffer of
+  /// another size is replaced.
+  void Send(cl::Buffer& buffer, const void* data, std::size_t bytes);
+  template <typename T>
+  void Send(cl::Buffer& buffer, const std::vector<T>& values)
+  {
+    this->Send(buffer, values.data(), values.size() * sizeof(T));
+  }
+  ///@}
 
 private:
   OpenCLContext* Context = nullptr;

@@ -72,10 +72,9 @@ SlabCounts SectionCounters::Read(
       kernel, 0, arguments..., cl::Local(DEFORMVOLUME_SUMMED * group * sizeof(cl_ulong)));
     launcher.Launch(kernel, cl::NDRange(group * groups), cl::NDRange(group));
   };
-  // Some drivers do not accept a null buffer, so pass another one.
   launch("SumParts", DEFORMVOLUME_PARTS, this->Counters,
-    static_cast<cl_uint>(this->NumberOfSections), coverageBits() ? coverageBits : this->Counters,
-    cl_ulong{ coverageWords }, this->Parts);
+    static_cast<cl_uint>(this->NumberOfSections), coverageBits, cl_ulong{ coverageWords },
+    this->Parts);
   launch("Summarize", 1, this->Parts, this->Summary);
   launcher.GetQueue().enqueueReadBuffer(this->Summary, CL_TRUE, 0, sizeof(words), words.data());
   const auto join = [&](std::size_t word)

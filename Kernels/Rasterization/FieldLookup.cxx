@@ -15,8 +15,9 @@ namespace deformvolume
 
 void MeshRasterizer::SetField(const DisplacementField& inverse)
 {
-  cl::Buffer last = this->FieldVectors;
+  const cl::Buffer last = this->FieldVectors;
   this->Clear();
+  this->FieldVectors = last;
   for (std::size_t i = 0; i < inverse.IndexToField.size(); ++i)
   {
     this->Field.OutputToField[i] = static_cast<float>(inverse.IndexToField[i]);
@@ -34,11 +35,7 @@ void MeshRasterizer::SetField(const DisplacementField& inverse)
   }
   CheckAllocation(bytes, this->Device->GetAllocationLimit(),
     "The vectors of the displacement field", "Use a coarser field");
-  if (deformvolume::GetMemory(last) != bytes)
-  {
-    last = cl::Buffer(); // free the old buffer before allocating a new one
-  }
-  this->FieldVectors = this->Device->Send(inverse.Vectors, static_cast<std::size_t>(bytes), last);
+  this->Device->Send(this->FieldVectors, inverse.Vectors, static_cast<std::size_t>(bytes));
 }
 
 std::size_t MeshRasterizer::GetNumberOfNodes() const

@@ -67,11 +67,7 @@ void Send(WorkDevice& device, cl::Buffer& buffer, const void* data, std::uint64_
 {
   CheckAllocation(bytes, device.GetAllocationLimit(),
     "The nodes and tetrahedra of the deformation mesh", "Use a coarser mesh");
-  if (GetMemory(buffer) != bytes)
-  {
-    buffer = cl::Buffer(); // free the old buffer before allocating a new one
-  }
-  buffer = device.Send(data, static_cast<std::size_t>(bytes), buffer);
+  device.Send(buffer, data, static_cast<std::size_t>(bytes));
 }
 
 RasterParameters MakeParameters(
@@ -172,17 +168,12 @@ void MeshRasterizer::CheckPositions() const
   }
 }
 
-cl_uint MeshRasterizer::SetArguments(
-  const RasterParameters& p, const OutputMemory& target, const cl::Buffer& counters)
+cl_uint MeshRasterizer::SetArguments(const OutputMemory& target, const cl::Buffer& counters)
 {
   const VolumeChunk& chunk = this->Volume->GetChunks().front();
-  const DeviceMasks& masks = this->Volume->GetMasks();
-  // Some drivers do not accept a null buffer, so pass another buffer instead of a missing one.
-  const cl::Buffer& other = this->Volume->GetRestPositions();
-  const cl_uint parameters =
-    deformvolume::SetArguments(this->Kernel, this->SetDeformationArguments(this->Kernel),
-      p.HasActive ? chunk.Active : other, masks.GetBlanked(chunk, other),
-      masks.GetDistances(chunk, other), this->Backgrounds, target.GetCoverage(), counters);
+  const cl_uint parameters = deformvolume::SetArguments(this->Kernel,
+    this->SetDeformationArguments(this->Kernel), chunk.Active, chunk.Blanked, chunk.Distances,
+    this->Backgrounds, target.GetCoverage(), counters);
   cl_uint i = parameters + 1;
   for (std::size_t a = 0; a < chunk.Arrays.size(); ++a)
   {
@@ -201,7 +192,7 @@ void MeshRasterizer::RunTiles(RasterParameters p, const OutputMemory& target,
   const cl::CommandQueue& queue = this->Device->GetQueue();
   const cl::Buffer counters(context.GetContext(), CL_MEM_WRITE_ONLY, counterBytes);
   const QueueGuard guard(queue);
-  const cl_uint parameters = this->SetArguments(p, target, counters);
+  const cl_uint parameters = this->SetArguments(target, counters);
   const std::size_t group = this->Device->GetHeavyGroupSize(this->Kernel);
   const std::size_t step = (tiles + LaunchesPerSlab - 1) / LaunchesPerSlab;
   cl::Event previous;

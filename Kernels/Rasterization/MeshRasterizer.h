@@ -83,8 +83,7 @@ private:
 
   cl::Kernel MakeKernel(Interpolation interpolation) const;
   /// Sets all arguments of the kernel except the parameters. Returns the index of the parameters.
-  cl_uint SetArguments(
-    const RasterParameters& p, const OutputMemory& target, const cl::Buffer& counters);
+  cl_uint SetArguments(const OutputMemory& target, const cl::Buffer& counters);
   /// Sets the first arguments. Returns their number.
   cl_uint SetDeformationArguments(cl::Kernel& kernel) const;
 

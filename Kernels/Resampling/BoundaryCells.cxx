@@ -146,9 +146,8 @@ void BoundaryCells::SetCorners(const Tetrahedron* tetrahedra)
     this->Device.GetDevice().Device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   CheckAllocation(bytes, most, "The cells on the boundary of the deformation",
     "Use a coarser mesh or field, a smaller volume");
-  this->Corners =
-    this->Device.Send(corners.data(), corners.size() * sizeof(BoundaryCorner), this->Corners);
-  this->Pieces = this->Device.Send(pieces.data(), pieces.size() * sizeof(cl_int4), this->Pieces);
+  this->Device.Send(this->Corners, corners);
+  this->Device.Send(this->Pieces, pieces);
   OpenCLContext& context = this->Device.GetContext();
   Reserve(context, this->Positions, corners.size() * sizeof(cl_int4));
   Reserve(context, this->Displacements, corners.size() * sizeof(cl_float4));
@@ -160,8 +159,7 @@ void BoundaryCells::MoveCorners()
   OpenCLContext& context = this->Device.GetContext();
   cl::Kernel kernel(GetCornerProgram(context), "MoveCorners");
   const auto count = static_cast<cl_uint>(this->NumberOfCorners);
-  const cl_uint i =
-    this->Source.SetPointArguments(kernel, SetArguments(kernel, 0, this->Corners), this->Pieces);
+  const cl_uint i = this->Source.SetPointArguments(kernel, SetArguments(kernel, 0, this->Corners));
   SetArguments(kernel, i, this->Positions, this->Displacements, count);
   this->Launcher.AddMapping(this->Device.Launch(kernel, count));
 }
@@ -246,7 +244,7 @@ void BoundaryCells::Run(
   const std::vector<cl_uint> tiles = ListTiles(r, patches);
   if (!tiles.empty())
   {
-    this->Tiles = this->Device.Send(tiles.data(), tiles.size() * sizeof(cl_uint), this->Tiles);
+    this->Device.Send(this->Tiles, tiles);
     const std::uint64_t bytes = numberOfPatches * sizeof(cl_uint);
     Reserve(this->Device.GetContext(), this->PatchCounts, bytes);
     PendingCopy sent =
@@ -270,7 +268,6 @@ void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& out
   const Extent& whole = GetWholeExtent(this->Volume.GetVoxelGrid());
   const std::vector<VolumeChunk>& chunks = this->Volume.GetChunks();
   const DeviceMasks& masks = this->Volume.GetMasks();
-  const cl::Buffer& other = this->Volume.GetRestPositions();
   // With several chunks, all upright pieces must come before any inverted one.
   for (const int orientation : chunks.size() > 1 ? std::vector<int>{ 1, 2 } : std::vector<int>{ 3 })
   {
@@ -279,9 +276,8 @@ void BoundaryCells::RunTiles(const DeformRequest& request, const OutputSlab& out
       KernelParameters p = this->Volume.GetParameters(chunk);
       output.SetParameters(p);
       cl_uint i = SetArguments(kernel, 0, this->Pieces, this->Positions, this->Displacements,
-        this->Lists.GetBegins(), this->Lists.GetLists(), this->Tiles, masks.GetActive(chunk, other),
-        masks.GetGivenActive(chunk, other), masks.GetBlanked(chunk, other),
-        masks.GetDistances(chunk, other), output.GetCoverageTarget(), this->PatchCounts,
+        this->Lists.GetBegins(), this->Lists.GetLists(), this->Tiles, masks.GetActive(chunk),
+        chunk.Active, chunk.Blanked, chunk.Distances, output.GetCoverageTarget(), this->PatchCounts,
         MakeInt4(whole[0], whole[2], whole[4]), MakeInt4(whole[1], whole[3], whole[5]),
         cl_int{ orientation }, r, p);
       const std::vector<cl::Buffer>& sources = this->Volume.GetArrays().GetBuffers(chunk);

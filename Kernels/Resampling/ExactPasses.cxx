@@ -156,15 +156,11 @@ void ExactPasses::SetArguments(cl::Kernel& kernel, const VolumeChunk& chunk,
   const OutputSlab& output, ResamplingKernel form, const KernelParameters& p)
 {
   const DeviceMasks& masks = this->Volume.GetMasks();
-  const cl::Buffer& other = this->Volume.GetRestPositions();
   const OutputWinners& winners = output.GetWinners();
-  const cl::Buffer& target = output.GetCoverageTarget();
-  // Some drivers do not accept a null buffer, so pass another buffer instead of a missing one.
-  cl_uint i = deformvolume::SetArguments(kernel, this->Source.SetMappingArguments(kernel, chunk),
-    this->Volume.GetState(chunk), masks.GetActive(chunk, other), masks.GetDistances(chunk, other),
-    target, winners.GetKeys()() ? winners.GetKeys() : target,
-    winners.GetPatches()() ? winners.GetPatches() : target, output.GetLargeCells().GetBuffer(),
-    output.GetCounters().GetBuffer());
+  cl_uint i =
+    deformvolume::SetArguments(kernel, this->Source.SetMappingArguments(kernel, chunk), chunk.State,
+      masks.GetActive(chunk), chunk.Distances, output.GetCoverageTarget(), winners.GetKeys(),
+      winners.GetPatches(), output.GetLargeCells().GetBuffer(), output.GetCounters().GetBuffer());
   if (masks.HasCut())
   {
     i = masks.GetCut().SetArguments(kernel, i);
@@ -339,7 +335,7 @@ const cl::Buffer& ExactPasses::SendBricks(const std::vector<cl_uint>& list)
     return this->Bricks; // sending them again would wait for the queue
   }
   this->SentBricks.clear(); // if sending fails, the content is unknown
-  this->Bricks = this->Device.Send(list.data(), list.size() * sizeof(cl_uint), this->Bricks);
+  this->Device.Send(this->Bricks, list);
   this->SentBricks = list;
   return this->Bricks;
 }

@@ -210,10 +210,10 @@ protected:
   // Makes the lists and reads them. Reuses the buffers of the previous call.
   Lists Make(const ListCase& c, std::int64_t& inverted)
   {
-    const cl::Buffer tetrahedra = this->Device.Send(
-      c.Tetrahedra.data(), c.Tetrahedra.size() * sizeof(Tetrahedron), cl::Buffer());
-    const cl::Buffer positions =
-      this->Device.Send(c.Positions.data(), c.Positions.size() * sizeof(Position), cl::Buffer());
+    cl::Buffer tetrahedra;
+    this->Device.Send(tetrahedra, c.Tetrahedra);
+    cl::Buffer positions;
+    this->Device.Send(positions, c.Positions);
     RasterParameters p = c.Parameters;
     p.Tetrahedra = static_cast<int>(c.Tetrahedra.size());
     MemoryBudget budget(this->Device, [] { return std::uint64_t{ 0 }; });

@@ -4,6 +4,7 @@
 #include "DeformerCase.h"
 #include "DeviceNeeds.h"
 #include "DeviceVolume.h"
+#include "KernelMaking.h"
 #include "KernelText.h"
 #include "MappingProgram.h"
 #include "MemoryNeeds.h"
@@ -251,9 +252,7 @@ private:
     const std::size_t voxels = plane * (p.PlanesEnd - p.PlanesBegin);
     const cl::Buffer positions(
       this->Context.GetContext(), CL_MEM_READ_WRITE, voxels * 3 * sizeof(int));
-    kernel.setArg(i++, this->Mesh.GetState(chunk));
-    kernel.setArg(i++, positions);
-    kernel.setArg(i++, p);
+    SetArguments(kernel, i, chunk.State, positions, p);
     this->Queue.enqueueNDRangeKernel(
       kernel, cl::NullRange, cl::NDRange(p.Size[0], p.Size[1], p.PlanesEnd - p.PlanesBegin));
     std::vector<int> values(3 * voxels);

@@ -530,7 +530,8 @@ TEST(DeviceVectors, TinyBoxes)
   WorkDevice device;
   const std::array<int, 3> size{ { 5, 4, 3 } };
   const std::vector<float> vectors = MakeVectors(80, 1); // 60 vectors of four floats
-  const cl::Buffer there = device.Send(vectors.data(), 60 * 4 * sizeof(float), cl::Buffer());
+  cl::Buffer there;
+  device.Send(there, vectors.data(), 60 * 4 * sizeof(float));
   const std::vector<Extent> boxes{ { { 0, 4, 0, 3, 0, 2 } }, { { 4, 4, 3, 3, 2, 2 } },
     { { 1, 3, 0, 1, 1, 2 } } };
   EXPECT_TRUE(FindBoxBounds(device, there, size, {}).empty());

@@ -30,10 +30,10 @@ TEST(MeshRasterizationGraphics, ListsStayOnTheDevice)
   }
   WorkDevice device;
   MemoryBudget budget(device, [] { return std::uint64_t{ 0 }; });
-  const cl::Buffer nodes =
-    device.Send(positions.data(), positions.size() * sizeof(cl_int), cl::Buffer());
-  const cl::Buffer mesh =
-    device.Send(tetrahedra.data(), tetrahedra.size() * sizeof(Tetrahedron), cl::Buffer());
+  cl::Buffer nodes;
+  cl::Buffer mesh;
+  device.Send(nodes, positions);
+  device.Send(mesh, tetrahedra);
   TetrahedronLists lists;
   FakeDriver& driver = FakeDriver::Get();
   driver.BytesRead = 0;
