@@ -122,8 +122,12 @@ void WorldDeformation::ReadField(vtkImageData* image, const DeformationSource& s
       }
     });
   this->Field = MakeWorldField(GetGeometry(image));
-  this->Field.Floats = floats;
-  this->Field.Doubles = this->Converted.data();
+  const auto count = static_cast<std::size_t>(array->GetNumberOfTuples());
+  this->Field.Vectors = { this->Converted.data(), true, count };
+  if (floats)
+  {
+    this->Field.Vectors = { floats, false, count };
+  }
   this->Field.Scale = source.DisplacementScale;
   this->Field.Undefined = this->Undefined.empty() ? nullptr : this->Undefined.data();
   this->Remember(stamp, source);

@@ -55,76 +55,40 @@ constexpr double BoundsTolerance = 2.0 * FieldTolerance;
 // Distance up to which a position counts as on a voxel, or on a point of the field.
 constexpr double OnPoint = 1e-6;
 
-// The transform between continuous indices of the volume and of a field.
-class FieldGeometry
+bool IsInvertible(const FieldTransform& transform)
 {
-public:
-  explicit FieldGeometry(const DisplacementField& field)
-    : Last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1)
-    , Matrix(GetVoxelsToField(field))
-    , Inverse(glm::inverse(this->Matrix))
-    , Translation(field.IndexToField[3], field.IndexToField[7], field.IndexToField[11])
-  {
-  }
+  const glm::dmat3& inverse = transform.Inverse;
+  return IsFinite(inverse[0]) && IsFinite(inverse[1]) && IsFinite(inverse[2]);
+}
 
-  bool IsInvertible() const
+// Whether the voxels lie on the points of the field.
+bool IsOnGrid(const FieldTransform& transform)
+{
+  bool identity = true;
+  for (int column = 0; column < 3; ++column)
   {
-    return IsFinite(this->Inverse[0]) && IsFinite(this->Inverse[1]) && IsFinite(this->Inverse[2]);
-  }
-  /// Whether the voxels lie on the points of the field.
-  bool IsOnGrid() const
-  {
-    bool identity = true;
-    for (int column = 0; column < 3; ++column)
+    const double offset = transform.Offset[column];
+    identity = identity && std::abs(offset - std::round(offset)) < OnPoint;
+    for (int row = 0; row < 3; ++row)
     {
-      const double offset = this->Translation[column];
-      identity = identity && std::abs(offset - std::round(offset)) < OnPoint;
-      for (int row = 0; row < 3; ++row)
-      {
-        identity =
-          identity && std::abs(this->Matrix[column][row] - (row == column ? 1.0 : 0.0)) < 1e-9;
-      }
+      identity =
+        identity && std::abs(transform.Matrix[column][row] - (row == column ? 1.0 : 0.0)) < 1e-9;
     }
-    return identity;
   }
-  glm::dvec3 ToField(const glm::dvec3& index) const
-  {
-    return this->Matrix * index + this->Translation;
-  }
-  glm::dvec3 ToIndex(const glm::dvec3& position) const
-  {
-    return this->Inverse * (position - this->Translation);
-  }
-  IndexBounds ToField(const IndexBounds& box) const
-  {
-    return Surround(
-      this->ToField(0.5 * (box.Min + box.Max)), this->Matrix, 0.5 * (box.Max - box.Min));
-  }
-  IndexBounds ToIndex(const IndexBounds& box) const
-  {
-    return Surround(
-      this->ToIndex(0.5 * (box.Min + box.Max)), this->Inverse, 0.5 * (box.Max - box.Min));
-  }
+  return identity;
+}
 
-  /// Index of the last point of the field.
-  const glm::dvec3 Last;
-
-private:
-  static IndexBounds Surround(
-    const glm::dvec3& center, const glm::dmat3& matrix, const glm::dvec3& half)
-  {
-    const glm::dvec3 extended =
-      glm::abs(matrix[0]) * half.x + glm::abs(matrix[1]) * half.y + glm::abs(matrix[2]) * half.z;
-    IndexBounds bounds;
-    bounds.Add(center - extended);
-    bounds.Add(center + extended);
-    return bounds;
-  }
-
-  const glm::dmat3 Matrix;
-  const glm::dmat3 Inverse;
-  const glm::dvec3 Translation;
-};
+// Returns the bounding box of a transformed box. center: the transformed center of the box.
+IndexBounds Surround(const glm::dvec3& center, const glm::dmat3& matrix, const IndexBounds& box)
+{
+  const glm::dvec3 half = 0.5 * (box.Max - box.Min);
+  const glm::dvec3 extended =
+    glm::abs(matrix[0]) * half.x + glm::abs(matrix[1]) * half.y + glm::abs(matrix[2]) * half.z;
+  IndexBounds bounds;
+  bounds.Add(center - extended);
+  bounds.Add(center + extended);
+  return bounds;
+}
 
 // Shrinks a box to the voxels that it contains. Returns false if it contains none.
 bool ShrinkToVoxels(IndexBounds& box)
@@ -136,9 +100,9 @@ bool ShrinkToVoxels(IndexBounds& box)
 
 // Returns the bounds, at rest, of the part of the volume that the field covers.
 IndexBounds GetCoveredBox(
-  const DisplacementField& field, const FieldGeometry& geometry, const IndexBounds& box)
+  const DisplacementField& field, const FieldTransform& geometry, const IndexBounds& box)
 {
-  if (field.Extrapolate || !geometry.IsInvertible())
+  if (field.Extrapolate || !IsInvertible(geometry))
   {
     return box;
   }
@@ -173,9 +137,9 @@ IndexBounds GetCoveredBox(
 // Whether the field ends within the volume, between voxels. The deformed volume then ends at the
 // border of the field.
 bool EndsBetweenVoxels(
-  const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
+  const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldTransform& geometry)
 {
-  return !field.Extrapolate && geometry.IsInvertible() && !geometry.IsOnGrid() &&
+  return !field.Extrapolate && IsInvertible(geometry) && !IsOnGrid(geometry) &&
     !HoldsBox(field, GetBox(voxelGrid), BoundsTolerance);
 }
 
@@ -198,7 +162,7 @@ glm::dvec3 Interpolate(const DisplacementField& field, const glm::dvec3& positio
 // the volume has voxels, and for fields that fade: bounds from the cells of a fading field would be
 // far too large, since a cell has voxels that move and voxels that do not.
 IndexBounds ComputeBoundsOfVoxels(
-  const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
+  const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldTransform& geometry)
 {
   const Extent& extent = voxelGrid.VertexExtent;
   const OutputTransform transform = GetOutputTransform(voxelGrid);
@@ -229,7 +193,7 @@ IndexBounds ComputeBoundsOfVoxels(
 // Computes bounds from the cells of the field: each displacement in a cell lies between those of
 // its corners.
 IndexBounds ComputeBoundsOfCells(
-  const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldGeometry& geometry)
+  const VoxelGrid& voxelGrid, const DisplacementField& field, const FieldTransform& geometry)
 {
   const IndexBounds box = GetBox(voxelGrid);
   IndexBounds covered = GetCoveredBox(field, geometry, box);
@@ -239,7 +203,8 @@ IndexBounds ComputeBoundsOfCells(
     return IndexBounds();
   }
   // Cells at the border of the field extend to where voxels count as inside or follow the border.
-  IndexBounds extended = geometry.ToField(box);
+  IndexBounds extended =
+    Surround(geometry.ToField(0.5 * (box.Min + box.Max)), geometry.Matrix, box);
   if (!field.Extrapolate)
   {
     extended.Min = glm::dvec3(0.0);
@@ -260,7 +225,7 @@ IndexBounds ComputeBoundsOfCells(
       const std::int64_t index[3] = { cell % cells[0], cell / cells[0] % cells[1],
         cell / (cells[0] * cells[1]) };
       IndexBounds rest = covered;
-      if (geometry.IsInvertible())
+      if (IsInvertible(geometry))
       {
         IndexBounds cellBox;
         for (int axis = 0; axis < 3; ++axis)
@@ -269,7 +234,8 @@ IndexBounds ComputeBoundsOfCells(
           cellBox.Min[axis] = index[axis] == 0 ? extended.Min[axis] : low;
           cellBox.Max[axis] = index[axis] == cells[axis] - 1 ? extended.Max[axis] : low + 1.0;
         }
-        rest = geometry.ToIndex(cellBox);
+        rest =
+          Surround(geometry.ToIndex(0.5 * (cellBox.Min + cellBox.Max)), geometry.Inverse, cellBox);
         rest.Min = glm::max(rest.Min, covered.Min);
         rest.Max = glm::min(rest.Max, covered.Max);
         if (rest.Min.x > rest.Max.x || rest.Min.y > rest.Max.y || rest.Min.z > rest.Max.z ||
@@ -355,9 +321,9 @@ IndexBounds ComputeDeformedBounds(const VoxelGrid& voxelGrid, const Displacement
   {
     return IndexBounds();
   }
-  const FieldGeometry geometry(field);
+  const FieldTransform geometry(field);
   // A field on the voxels of the volume may cover only a part of them, and then has fewer points.
-  const bool coLocated = geometry.IsOnGrid();
+  const bool coLocated = IsOnGrid(geometry);
   return coLocated || IsFading(field) ||
       (points >= GetNumberOfPoints(voxelGrid.VertexExtent) &&
         !EndsBetweenVoxels(voxelGrid, field, geometry))

@@ -30,7 +30,7 @@ inline WorldDeformer& GetDeformer(dv_deformer* deformer)
 }
 
 /// Throws an Error if the deformer has no volume. what: what needs it.
-inline void CheckVolume(const dv_deformer& deformer, const char* what)
+inline void CheckHasVolume(const dv_deformer& deformer, const char* what)
 {
   if (GetNumberOfPoints(deformer.Volume.PointExtent) == 0)
   {

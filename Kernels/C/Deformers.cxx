@@ -199,7 +199,7 @@ std::int32_t SetMasks(dv_deformer* deformer, const Change& change)
     [&]
     {
       WorldDeformer& world = GetDeformer(deformer);
-      CheckVolume(*deformer, "its masks");
+      CheckHasVolume(*deformer, "its masks");
       WorldMasks masks = deformer->Masks;
       change(masks);
       if (deformer->Edits)
@@ -276,7 +276,7 @@ std::int32_t dv_set_arrays(dv_deformer* deformer, std::int32_t count, const dv_a
           made.push_back({ MakeArray(array, "Array " + std::to_string(i)), array.density != 0 });
         }
       }
-      CheckVolume(*deformer, "its arrays");
+      CheckHasVolume(*deformer, "its arrays");
       world.SetArrays(made);
     });
 }

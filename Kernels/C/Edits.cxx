@@ -68,7 +68,7 @@ std::int32_t Edit(dv_deformer* deformer, const dv_edit* options, const Find& fin
     [&]
     {
       WorldDeformer& world = GetDeformer(deformer);
-      CheckVolume(*deformer, "it is edited");
+      CheckHasVolume(*deformer, "it is edited");
       std::unique_ptr<WorldEdits> first;
       if (!deformer->Edits)
       {

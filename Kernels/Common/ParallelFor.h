@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 namespace deformvolume
 {
@@ -59,6 +60,46 @@ void Lower(std::atomic<T>& least, T value)
   while (value < before && !least.compare_exchange_weak(before, value))
   {
   }
+}
+
+/// Returns the first number from 0 to size - 1 for which isWanted(number) is true; `size` if there
+/// is none. Tests `step` numbers at a time, in parallel.
+template <typename IsWanted>
+std::size_t FindFirst(std::size_t size, std::size_t step, IsWanted&& isWanted)
+{
+  std::atomic<std::size_t> first{ size };
+  ParallelForParts(size, step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      while (begin < end && !isWanted(begin))
+      {
+        ++begin;
+      }
+      Lower(first, begin < end ? begin : size);
+    });
+  return first;
+}
+
+/// Calls make(number, items) for numbers from 0 to size - 1, `step` numbers at a time, in parallel.
+/// make() appends items to a vector. Returns all items, in the order of the numbers.
+template <typename Item, typename Make>
+std::vector<Item> CollectItems(std::size_t size, std::size_t step, Make&& make)
+{
+  std::vector<std::vector<Item>> parts((size + step - 1) / step);
+  ParallelForParts(size, step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (std::size_t number = begin; number < end; ++number)
+      {
+        make(number, parts[begin / step]);
+      }
+    });
+  std::vector<Item> all;
+  for (const std::vector<Item>& part : parts)
+  {
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
 }
 
 } // namespace deformvolume

@@ -149,7 +149,7 @@ TetrahedronSet FindCarvedTetrahedra(const VertexPositions& positions, const Carv
         edit.HitIf([](const auto&) { return true; });
         return;
       }
-      if (rule == CarvingRule::Centroid)
+      if (rule == CarvingRule::Centroid && !tool.IsOfVertices)
       {
         CarveByCentroids(edit, tool);
         return;
@@ -158,23 +158,6 @@ TetrahedronSet FindCarvedTetrahedra(const VertexPositions& positions, const Carv
       edit.CopyPoints(points);
       std::array<double, BrickEdit::MaxVertices> values;
       tool.Function(points.data(), edit.GetNumberOfVertices(), values.data());
-      CarveByVertices(edit, values.data(), rule);
-    },
-    progress);
-}
-
-TetrahedronSet FindCarvedTetrahedra(const CellBricks& bricks,
-  const std::function<void(const Extent& vertices, double* values)>& find, CarvingRule rule,
-  const EditProgress& progress)
-{
-  const RestPositions positions(bricks.GetVertices());
-  return BrickEdit::ForEachBrick(
-    bricks.GetNumberOfBricks(),
-    [&](std::size_t brick, BrickEdit& edit)
-    {
-      edit.Set(positions, brick);
-      std::array<double, BrickEdit::MaxVertices> values;
-      find(edit.GetVertices(), values.data());
       CarveByVertices(edit, values.data(), rule);
     },
     progress);

@@ -5,7 +5,6 @@
 #include "DeformVolumeExport.h"
 #include "DistanceSet.h"
 #include "EditProgress.h"
-#include "Extent.h"
 #include "IndexBounds.h"
 #include "TetrahedronSet.h"
 #include "VertexPositions.h"
@@ -46,6 +45,9 @@ struct CarvingTool
   /// box of a brick are on one side, FindCarvedTetrahedra() does not evaluate the function inside
   /// this box.
   bool IsLinear = false;
+  /// Whether the function is known at the vertices of the volume at rest only, like a label map.
+  /// The value at a centroid is then the mean of the values at the vertices.
+  bool IsOfVertices = false;
 };
 
 /// Returns infinite bounds, for tools that may carve anywhere in the volume.
@@ -62,14 +64,6 @@ DEFORMVOLUME_EXPORT CarvingTool MakeSweptSphere(
 DEFORMVOLUME_EXPORT TetrahedronSet FindCarvedTetrahedra(const VertexPositions& positions,
   const CarvingTool& tool, CarvingRule rule, const EditProgress& progress = nullptr);
 
-/// Finds the carved tetrahedra from known values at the vertices, for example from a label map. The
-/// positions of the vertices do not matter. The value at a centroid is the mean of the values at
-/// the vertices. find: computes the values of the vertices in a box of structured indices, x
-/// varying fastest; called by several threads.
-DEFORMVOLUME_EXPORT TetrahedronSet FindCarvedTetrahedra(const CellBricks& bricks,
-  const std::function<void(const Extent& vertices, double* values)>& find, CarvingRule rule,
-  const EditProgress& progress = nullptr);
-
 /// The result of carving with a boundary that passes between vertices.
 struct SmoothCarving
 {
@@ -84,12 +78,6 @@ struct SmoothCarving
 /// Carves with a smooth boundary. far: the distance of vertices that are far from the boundary.
 DEFORMVOLUME_EXPORT SmoothCarving FindSmoothCarving(const VertexPositions& positions,
   const CarvingTool& tool, float far, const EditProgress& progress = nullptr);
-
-/// Carves with a smooth boundary from known values at the vertices (see FindCarvedTetrahedra()).
-/// distance: the unsigned distance of all vertices next to the boundary.
-DEFORMVOLUME_EXPORT SmoothCarving FindSmoothCarving(const CellBricks& bricks,
-  const std::function<void(const Extent& vertices, double* values)>& find, double distance,
-  float far, const EditProgress& progress = nullptr);
 
 } // namespace deformvolume
 

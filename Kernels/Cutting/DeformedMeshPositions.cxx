@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace deformvolume
@@ -43,29 +44,16 @@ DeformedMeshPositions::DeformedMeshPositions(const Extent& vertices, const Exten
   }
   const std::size_t count = bricks.GetNumberOfBricks();
   this->NegativeWeightSums.resize(count);
-  std::vector<std::vector<std::int32_t>> ofParts((count + BricksPerPart - 1) / BricksPerPart);
   this->Begins.resize(count + 1);
-  ParallelForParts(count, BricksPerPart,
-    [&](std::size_t begin, std::size_t end)
+  this->OfBricks = CollectItems<std::int32_t>(count, BricksPerPart,
+    [&](std::size_t brick, std::vector<std::int32_t>& all)
     {
-      std::vector<std::int32_t>& part = ofParts[begin / BricksPerPart];
-      std::vector<std::int32_t> some;
-      for (std::size_t brick = begin; brick < end; ++brick)
-      {
-        this->FindTetrahedra(bricks.GetVertices(brick), some, this->NegativeWeightSums[brick]);
-        part.insert(part.end(), some.begin(), some.end());
-        this->Begins[brick + 1] = some.size();
-      }
+      const std::vector<std::int32_t> found =
+        this->FindTetrahedra(bricks.GetVertices(brick), this->NegativeWeightSums[brick]);
+      all.insert(all.end(), found.begin(), found.end());
+      this->Begins[brick + 1] = found.size();
     });
-  for (std::size_t brick = 0; brick < count; ++brick)
-  {
-    this->Begins[brick + 1] += this->Begins[brick];
-  }
-  this->OfBricks.reserve(this->Begins.back());
-  for (const std::vector<std::int32_t>& part : ofParts)
-  {
-    this->OfBricks.insert(this->OfBricks.end(), part.begin(), part.end());
-  }
+  std::partial_sum(this->Begins.begin(), this->Begins.end(), this->Begins.begin());
   this->SetDisplacements(displacements);
 }
 
@@ -124,10 +112,10 @@ void DeformedMeshPositions::FollowRow(
   }
 }
 
-void DeformedMeshPositions::FindTetrahedra(
-  const Extent& vertices, std::vector<std::int32_t>& tetrahedra, float& overshoot) const
+std::vector<std::int32_t> DeformedMeshPositions::FindTetrahedra(
+  const Extent& vertices, float& overshoot) const
 {
-  tetrahedra.clear();
+  std::vector<std::int32_t> tetrahedra;
   double most = 0.0;
   for (int z = vertices[4]; z <= vertices[5]; ++z)
   {
@@ -150,6 +138,7 @@ void DeformedMeshPositions::FindTetrahedra(
   tetrahedra.erase(std::unique(tetrahedra.begin(), tetrahedra.end()), tetrahedra.end());
   constexpr double rounding = 1e-6; // a generous bound for rounding of doubles
   overshoot = static_cast<float>(most * (1.0 + rounding) + rounding);
+  return tetrahedra;
 }
 
 void DeformedMeshPositions::SetDisplacements(const float* displacements)

@@ -87,8 +87,7 @@ private:
   DisplacementLimits GetLimits(std::size_t brick) const override;
   template <typename Function>
   void FollowRow(int x, int y, int z, int count, bool ends, Function&& function) const;
-  void FindTetrahedra(
-    const Extent& vertices, std::vector<std::int32_t>& tetrahedra, float& overshoot) const;
+  std::vector<std::int32_t> FindTetrahedra(const Extent& vertices, float& overshoot) const;
 
   const Extent Mapped;
   const StaticMapping& Mapping;

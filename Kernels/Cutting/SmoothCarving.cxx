@@ -179,36 +179,4 @@ SmoothCarving FindSmoothCarving(const VertexPositions& positions, const CarvingT
   return carving;
 }
 
-SmoothCarving FindSmoothCarving(const CellBricks& bricks,
-  const std::function<void(const Extent& vertices, double* values)>& find, double distance,
-  float far, const EditProgress& progress)
-{
-  const RestPositions positions(bricks.GetVertices());
-  DistanceGatherer gatherer(bricks.GetVertices(), far, CombineCarvedDistances);
-  SmoothCarving carving;
-  carving.Tetrahedra = BrickEdit::ForEachBrick(
-    bricks.GetNumberOfBricks(),
-    [&](std::size_t brick, BrickEdit& edit)
-    {
-      edit.Set(positions, brick);
-      std::array<double, BrickEdit::MaxVertices> values;
-      find(edit.GetVertices(), values.data());
-      std::array<bool, BrickEdit::MaxVertices> inside{};
-      for (std::size_t i = 0; i < edit.GetNumberOfVertices(); ++i)
-      {
-        inside[i] = values[i] < 0.0;
-      }
-      CarvedBrick boundary(far);
-      if (boundary.Mark(edit, inside))
-      {
-        const std::vector<std::size_t> marked = boundary.GetMarked();
-        const std::vector<double> distances(marked.size(), distance);
-        gatherer.Add(edit.GetVertices(), boundary.Join(marked, distances.data()).data());
-      }
-    },
-    progress);
-  carving.Distances = gatherer.Take();
-  return carving;
-}
-
 } // namespace deformvolume

@@ -40,32 +40,21 @@ std::vector<std::uint32_t> FindSingleFaces(
   const std::vector<glm::dvec3>& points, const std::vector<Tetrahedron>& tetrahedra)
 {
   const FaceNeighbors neighbors(tetrahedra, points.size());
-  constexpr std::size_t step = 65536;
-  std::vector<std::vector<std::uint32_t>> parts((neighbors.GetNumberOfFaces() + step - 1) / step);
-  ParallelForParts(neighbors.GetNumberOfFaces(), step,
-    [&](std::size_t begin, std::size_t end)
+  return CollectItems<std::uint32_t>(neighbors.GetNumberOfFaces(), 65536,
+    [&](std::size_t face, std::vector<std::uint32_t>& single)
     {
-      for (std::size_t face = begin; face < end; ++face)
+      const bool isAbove = IsAbove(face, points, tetrahedra);
+      bool isSingle = true;
+      for (std::size_t next = neighbors.GetNext(face); next != face && isSingle;
+           next = neighbors.GetNext(next))
       {
-        const bool isAbove = IsAbove(face, points, tetrahedra);
-        bool isSingle = true;
-        for (std::size_t next = neighbors.GetNext(face); next != face && isSingle;
-             next = neighbors.GetNext(next))
-        {
-          isSingle = next > face && IsAbove(next, points, tetrahedra) == isAbove;
-        }
-        if (isSingle)
-        {
-          parts[begin / step].push_back(static_cast<std::uint32_t>(face));
-        }
+        isSingle = next > face && IsAbove(next, points, tetrahedra) == isAbove;
+      }
+      if (isSingle)
+      {
+        single.push_back(static_cast<std::uint32_t>(face));
       }
     });
-  std::vector<std::uint32_t> single;
-  for (const std::vector<std::uint32_t>& part : parts)
-  {
-    single.insert(single.end(), part.begin(), part.end());
-  }
-  return single;
 }
 
 } // namespace

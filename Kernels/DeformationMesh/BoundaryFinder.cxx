@@ -46,11 +46,7 @@ void AddCells(const Triangle& face, const Extent& whole, double tolerance, CellS
   }
   const int u = (k + 1) % 3;
   const int v = (k + 2) % 3;
-  IndexBounds box;
-  for (const glm::dvec3& point : face)
-  {
-    box.Add(point);
-  }
+  IndexBounds box = GetBox(face);
   for (int axis = 0; axis < 3; ++axis)
   {
     box.Min[axis] = std::max(box.Min[axis], whole[2 * axis] + BorderTolerance);

@@ -136,21 +136,10 @@ public:
   template <typename Make>
   MeshBoundary Collect(std::size_t numbers, Make&& make) const
   {
-    constexpr std::size_t step = 4096;
-    std::vector<std::vector<MeshBoundary::Piece>> parts((numbers + step - 1) / step);
-    ParallelForParts(numbers, step,
-      [&](std::size_t begin, std::size_t end)
-      {
-        for (std::size_t i = begin; i < end; ++i)
-        {
-          make(i, [&](const MeshBoundary::Piece& piece) { this->Add(piece, parts[begin / step]); });
-        }
-      });
     MeshBoundary boundary;
-    for (const std::vector<MeshBoundary::Piece>& part : parts)
-    {
-      boundary.Pieces.insert(boundary.Pieces.end(), part.begin(), part.end());
-    }
+    boundary.Pieces = CollectItems<MeshBoundary::Piece>(numbers, 4096,
+      [&](std::size_t i, std::vector<MeshBoundary::Piece>& pieces)
+      { make(i, [&](const MeshBoundary::Piece& piece) { this->Add(piece, pieces); }); });
     this->ListCells(boundary);
     return boundary;
   }

@@ -77,16 +77,7 @@ glm::dvec3 FindWeights(const glm::dvec3& point, const ClosestFace::Triangle& tri
 
 ClosestFace::ClosestFace(std::vector<Triangle> triangles)
   : Triangles(std::move(triangles))
-  , Tree(this->Triangles,
-      [](const Triangle& triangle)
-      {
-        IndexBounds box;
-        for (const glm::dvec3& corner : triangle)
-        {
-          box.Add(corner);
-        }
-        return box;
-      })
+  , Tree(this->Triangles, [](const Triangle& triangle) { return GetBox(triangle); })
 {
 }
 

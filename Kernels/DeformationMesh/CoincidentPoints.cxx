@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoincidentPoints.h"
 
-#include <cmath>
+#include "IndexBounds.h"
+
 #include <cstddef>
 #include <cstring>
 
@@ -41,7 +42,7 @@ std::vector<std::int32_t> FindCoincidentPoints(const std::vector<glm::dvec3>& po
   {
     const glm::dvec3& point = points[i];
     numbers[i] = static_cast<std::int32_t>(i);
-    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z))
+    if (!IsFinite(point))
     {
       continue;
     }

@@ -15,6 +15,7 @@
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -22,29 +23,25 @@
 namespace deformvolume
 {
 
-/// A bounding box, in continuous output indices unless stated otherwise.
-struct IndexBounds
+/// A bounding box of points with floating-point or integer coordinates.
+template <typename Point>
+struct BoundingBox
 {
   /// The lowest coordinate on each axis.
-  glm::dvec3 Min{ 1.0 };
+  Point Min{ 1 };
   /// The highest coordinate on each axis.
-  glm::dvec3 Max{ -1.0 };
+  Point Max{ -1 };
   /// Whether nothing has been added.
   bool IsEmpty() const { return this->Min.x > this->Max.x; }
   /// Enlarges the box to contain a point.
-  void Add(const glm::dvec3& point)
+  void Add(const Point& point)
   {
-    if (this->IsEmpty())
-    {
-      this->Min = point;
-      this->Max = point;
-      return;
-    }
-    this->Min = glm::min(this->Min, point);
-    this->Max = glm::max(this->Max, point);
+    const bool isEmpty = this->IsEmpty();
+    this->Min = isEmpty ? point : glm::min(this->Min, point);
+    this->Max = isEmpty ? point : glm::max(this->Max, point);
   }
   /// Enlarges the box to contain another box.
-  void Add(const IndexBounds& other)
+  void Add(const BoundingBox& other)
   {
     if (!other.IsEmpty())
     {
@@ -53,19 +50,40 @@ struct IndexBounds
     }
   }
   /// Whether the box contains another box. False if it is empty.
-  bool Contains(const IndexBounds& other) const
+  bool Contains(const BoundingBox& other) const
   {
     return !this->IsEmpty() && glm::all(glm::lessThanEqual(this->Min, other.Min)) &&
       glm::all(glm::greaterThanEqual(this->Max, other.Max));
   }
   /// Whether the boxes overlap. False if one of them is empty.
-  bool Overlaps(const IndexBounds& other) const
+  bool Overlaps(const BoundingBox& other) const
   {
     return !this->IsEmpty() && !other.IsEmpty() &&
       glm::all(glm::lessThanEqual(this->Min, other.Max)) &&
       glm::all(glm::lessThanEqual(other.Min, this->Max));
   }
+  /// Returns the length of the longest edge.
+  typename Point::value_type GetLength() const
+  {
+    const Point size = this->Max - this->Min;
+    return std::max({ size.x, size.y, size.z });
+  }
 };
+
+/// A bounding box, in continuous output indices unless stated otherwise.
+using IndexBounds = BoundingBox<glm::dvec3>;
+
+/// Returns the bounding box of some points.
+template <typename Point, std::size_t Count>
+BoundingBox<Point> GetBox(const std::array<Point, Count>& points)
+{
+  BoundingBox<Point> box;
+  for (const Point& point : points)
+  {
+    box.Add(point);
+  }
+  return box;
+}
 
 /// Largest absolute index of a vertex at rest on each axis of the output. Indices in units of 1/256
 /// voxel, and their differences, then fit into 32 bits.
@@ -187,19 +205,41 @@ inline bool IsFinite(const glm::dvec3& v)
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Returns a vector from an array of three floats per vector.
-inline glm::dvec3 GetVector(const float* vectors, std::int64_t index)
+/// Returns a vector from an array of three numbers per vector.
+template <typename Number>
+glm::dvec3 GetVector(const Number* vectors, std::int64_t index)
 {
   return glm::dvec3(vectors[3 * index], vectors[3 * index + 1], vectors[3 * index + 2]);
 }
 
-/// Returns the matrix from vectors in voxels of the volume to vectors in steps between points of a
-/// field.
-inline glm::dmat3 GetVoxelsToField(const DisplacementField& field)
+/// The transform DisplacementField::IndexToField and its inverse.
+struct FieldTransform
 {
-  const auto& m = field.IndexToField;
-  return glm::dmat3(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
-}
+  explicit FieldTransform(const DisplacementField& field)
+    : Last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1)
+  {
+    const auto& m = field.IndexToField;
+    this->Matrix = glm::dmat3(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
+    this->Inverse = glm::inverse(this->Matrix);
+    this->Offset = glm::dvec3(m[3], m[7], m[11]);
+  }
+  /// Transforms a continuous index of the volume to one of the field.
+  glm::dvec3 ToField(const glm::dvec3& index) const { return this->Matrix * index + this->Offset; }
+  /// Transforms a continuous index of the field to one of the volume.
+  glm::dvec3 ToIndex(const glm::dvec3& position) const
+  {
+    return this->Inverse * (position - this->Offset);
+  }
+
+  /// The last point of the field on each axis.
+  glm::dvec3 Last;
+  /// From vectors in voxels of the volume to vectors in steps between points of the field.
+  glm::dmat3 Matrix{ 1.0 };
+  /// The inverse of Matrix; not finite if Matrix is singular.
+  glm::dmat3 Inverse{ 1.0 };
+  /// Position of the index (0, 0, 0) of the volume in the field.
+  glm::dvec3 Offset{ 0.0 };
+};
 
 /// Returns the displacement of a point of a field.
 inline glm::dvec3 GetVector(const DisplacementField& field, std::int64_t point)
@@ -233,16 +273,14 @@ inline double GetWeightBeyond(
 /// points of the field.
 inline bool HoldsBox(const DisplacementField& field, const IndexBounds& box, double tolerance)
 {
-  const auto& m = field.IndexToField;
-  const glm::dmat3 toField = GetVoxelsToField(field);
-  const glm::dvec3 last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1);
+  const FieldTransform transform(field);
   for (int corner = 0; corner < 8; ++corner)
   {
     const glm::dvec3 cornerPoint((corner & 1) != 0 ? box.Max.x : box.Min.x,
       (corner & 2) != 0 ? box.Max.y : box.Min.y, (corner & 4) != 0 ? box.Max.z : box.Min.z);
-    const glm::dvec3 position = toField * cornerPoint + glm::dvec3(m[3], m[7], m[11]);
+    const glm::dvec3 position = transform.ToField(cornerPoint);
     if (!glm::all(glm::greaterThan(position, glm::dvec3(-tolerance))) ||
-      !glm::all(glm::lessThan(position, last + tolerance)))
+      !glm::all(glm::lessThan(position, transform.Last + tolerance)))
     {
       return false;
     }

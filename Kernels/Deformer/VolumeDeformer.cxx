@@ -10,7 +10,6 @@
 #include "VolumeDeformerInternals.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <utility>
 
@@ -59,23 +58,14 @@ void CheckInverseVectors(const DisplacementField& field)
 {
   CheckHasPoints(field);
   const auto count = static_cast<std::size_t>(GetNumberOfPoints(field));
-  std::atomic<std::size_t> bad{ count };
-  constexpr std::size_t step = 16384;
-  ParallelForParts(count, step,
-    [&](std::size_t begin, std::size_t end)
+  const std::size_t bad = FindFirst(count, 16384,
+    [&](std::size_t point)
     {
-      for (std::size_t point = begin; point < end; ++point)
-      {
-        const float* v = field.Vectors + 3 * point;
-        const auto isGood = [](float component)
-        { return std::abs(component) <= LargestDisplacement; };
-        const bool isUndefined = std::isnan(v[0]) && std::isnan(v[1]) && std::isnan(v[2]);
-        if (!isUndefined && !std::all_of(v, v + 3, isGood))
-        {
-          Lower(bad, point);
-          return;
-        }
-      }
+      const float* v = field.Vectors + 3 * point;
+      const auto isGood = [](float component)
+      { return std::abs(component) <= LargestDisplacement; };
+      const bool isUndefined = std::isnan(v[0]) && std::isnan(v[1]) && std::isnan(v[2]);
+      return !isUndefined && !std::all_of(v, v + 3, isGood);
     });
   if (bad < count)
   {
@@ -213,16 +203,25 @@ void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOf
   std::size_t numberOfNodes, const VertexLink* links, const MeshBoundary* boundary)
 {
   CheckMesh(links ? tetrahedra : nullptr, numberOfTetrahedra, numberOfNodes);
-  this->Impl->Send([&](Internals::Parts& parts)
-    { parts.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, links, boundary); });
+  this->Impl->Send(
+    [&](Internals::Parts& parts)
+    {
+      CheckLinks(links, GetNumberOfPoints(parts.Volume.GetVoxelGrid().VertexExtent),
+        numberOfTetrahedra);
+      parts.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, links, boundary);
+    });
 }
 
 void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
   std::size_t numberOfNodes, const VertexRuns& runs, const MeshBoundary* boundary)
 {
   CheckMesh(tetrahedra, numberOfTetrahedra, numberOfNodes);
-  this->Impl->Send([&](Internals::Parts& parts)
-    { parts.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, runs, boundary); });
+  this->Impl->Send(
+    [&](Internals::Parts& parts)
+    {
+      CheckRuns(runs, parts.Volume.GetVoxelGrid(), numberOfTetrahedra);
+      parts.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, runs, boundary);
+    });
 }
 
 void VolumeDeformer::ChangeConnectivity(const Tetrahedron* tetrahedra,

@@ -19,7 +19,6 @@ namespace
 void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume& volume,
   const DeformRequest& request, std::uint64_t spare, DeformReport& report)
 {
-  using Clock = std::chrono::steady_clock;
   const std::vector<VolumeArray>& arrays = volume.GetArrays().Get();
   SlabPlan plan;
   plan.Slabs = SplitIntoSlabs(
@@ -44,13 +43,13 @@ void MakeSlabs(SlabResampler& resampler, WorkDevice& device, const DeviceVolume&
       report.DeviceOutputs = target.KeepOnDevice(device.GetReadQueue());
       continue;
     }
-    const Clock::time_point begin = Clock::now();
+    const Stopwatch watch;
     target.Read(device.GetReadQueue(), target.GetExtent());
     if (!plan.Overlapped || slab + 1 == plan.Slabs.size())
     {
       resampler.FinishReading();
     }
-    report.TransferTime += std::chrono::duration<double>(Clock::now() - begin).count();
+    report.TransferTime += watch.GetSeconds();
   }
 }
 

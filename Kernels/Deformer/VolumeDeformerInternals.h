@@ -11,10 +11,10 @@
 #include "MemoryBudget.h"
 #include "MemoryNeeds.h"
 #include "MeshRasterizer.h"
+#include "Stopwatch.h"
 #include "VolumeDeformer.h"
 #include "WorkDevice.h"
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -38,12 +38,12 @@ public:
     void SetBoundary(const MeshBoundary& boundary, const Tetrahedron* tetrahedra);
     /// Finds the boundary of a field, if the mapping of the field changed.
     void UpdateFieldBoundary(const DisplacementField& field);
-    /// Sets a mesh that CheckMesh accepted. Mapping: links or runs.
+    /// Sets a mesh. CheckMesh() and CheckLinks() or CheckRuns() must have accepted it. Mapping:
+    /// links or runs.
     template <typename Mapping>
     void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
       std::size_t numberOfNodes, const Mapping& mapping, const MeshBoundary* boundary)
     {
-      this->Source.CheckMapping(mapping, numberOfTetrahedra); // before anything is changed
       this->SetBoundary({}, nullptr);
       this->Source.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, mapping);
       if (boundary)
@@ -99,10 +99,9 @@ public:
   template <typename Function>
   void Send(Function&& function)
   {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     this->Guard([&] { function(this->GetParts()); });
-    this->SendingTime +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    this->SendingTime += watch.GetSeconds();
   }
 
   /// Throws an Error if no volume is set.

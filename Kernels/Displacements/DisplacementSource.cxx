@@ -69,17 +69,6 @@ DisplacementSource::DisplacementSource(
 {
 }
 
-void DisplacementSource::CheckMapping(const VertexLink* links, std::size_t numberOfTetrahedra) const
-{
-  CheckLinks(
-    links, GetNumberOfPoints(this->Volume.GetVoxelGrid().VertexExtent), numberOfTetrahedra);
-}
-
-void DisplacementSource::CheckMapping(const VertexRuns& runs, std::size_t numberOfTetrahedra) const
-{
-  CheckRuns(runs, this->Volume.GetVoxelGrid(), numberOfTetrahedra);
-}
-
 void DisplacementSource::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
   std::size_t numberOfNodes, const VertexLink* links)
 {

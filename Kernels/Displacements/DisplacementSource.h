@@ -38,13 +38,8 @@ public:
   DisplacementSource(WorkDevice& device, DeviceVolume& volume, ChangeTracker& tracker);
 
   ///@{
-  /// Throw an Error if links or runs do not fit the volume or the number of tetrahedra.
-  void CheckMapping(const VertexLink* links, std::size_t numberOfTetrahedra) const;
-  void CheckMapping(const VertexRuns& runs, std::size_t numberOfTetrahedra) const;
-  ///@}
-  ///@{
   /// Set a deformation mesh with a link for each voxel or with runs. The mesh must have been
-  /// checked (CheckMesh(), CheckMapping()). Its nodes have no displacements until
+  /// checked (CheckMesh(), CheckLinks(), CheckRuns()). Its nodes have no displacements until
   /// SetNodeDisplacements() is called.
   void SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra,
     std::size_t numberOfNodes, const VertexLink* links);

@@ -3,7 +3,7 @@
 
 #include "BoundaryFinder.h"
 #include "FiveTetrahedra.h"
-#include "IndexBounds.h" // for GetVoxelsToField
+#include "IndexBounds.h" // for FieldTransform
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -22,31 +22,8 @@ namespace
 // approximated as linear.
 constexpr double FieldPiece = 4.0;
 
-// The grid of a field, in continuous indices of the volume.
-struct FieldGrid
-{
-  explicit FieldGrid(const DisplacementField& field)
-    : ToField(GetVoxelsToField(field))
-    , ToIndex(glm::inverse(this->ToField))
-    , Offset(field.IndexToField[3], field.IndexToField[7], field.IndexToField[11])
-    , Last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1)
-  {
-  }
-
-  // Returns the index in the volume of a point of the field.
-  glm::dvec3 GetIndex(const glm::dvec3& point) const
-  {
-    return this->ToIndex * (point - this->Offset);
-  }
-
-  glm::dmat3 ToField;
-  glm::dmat3 ToIndex;
-  glm::dvec3 Offset;
-  glm::dvec3 Last; // the last point on each axis
-};
-
 // Returns two triangles on each side of the field.
-std::vector<Triangle> MakeSides(const FieldGrid& grid)
+std::vector<Triangle> MakeSides(const FieldTransform& grid)
 {
   std::vector<Triangle> sides;
   for (int axis = 0; axis < 3; ++axis)
@@ -60,7 +37,7 @@ std::vector<Triangle> MakeSides(const FieldGrid& grid)
         point[axis] = side * grid.Last[axis];
         point[(axis + 1) % 3] = (corner & 1) * grid.Last[(axis + 1) % 3];
         point[(axis + 2) % 3] = (corner >> 1) * grid.Last[(axis + 2) % 3];
-        corners[static_cast<std::size_t>(corner)] = grid.GetIndex(point);
+        corners[static_cast<std::size_t>(corner)] = grid.ToIndex(point);
       }
       sides.push_back({ { corners[0], corners[1], corners[2] } });
       sides.push_back({ { corners[3], corners[1], corners[2] } });
@@ -74,12 +51,12 @@ std::vector<Triangle> MakeSides(const FieldGrid& grid)
 class PieceLattice
 {
 public:
-  explicit PieceLattice(const FieldGrid& grid)
+  explicit PieceLattice(const FieldTransform& grid)
     : Grid(grid)
   {
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double length = glm::length(grid.ToIndex[axis]);
+      const double length = glm::length(grid.Inverse[axis]);
       this->Step[axis] = length > FieldPiece ? 1.0 / std::round(length / FieldPiece)
                                              : std::max(1.0, std::floor(FieldPiece / length));
       this->Cells[axis] = std::max<std::int64_t>(
@@ -90,8 +67,8 @@ public:
   // Adds the numbers of the lattice cells that meet a cell of the volume.
   void AddNumbers(const glm::dvec3& cellOfVolume, std::vector<std::int64_t>& numbers) const
   {
-    const glm::dmat3& toField = this->Grid.ToField;
-    const glm::dvec3 middle = (toField * (cellOfVolume + 0.5) + this->Grid.Offset) / this->Step;
+    const glm::dmat3& toField = this->Grid.Matrix;
+    const glm::dvec3 middle = this->Grid.ToField(cellOfVolume + 0.5) / this->Step;
     const glm::dvec3 margin = (0.5 + BoundaryTolerance) *
       (glm::abs(toField[0]) + glm::abs(toField[1]) + glm::abs(toField[2])) / this->Step;
     const glm::dvec3 least(0.0);
@@ -133,7 +110,7 @@ public:
       for (std::size_t k = 0; k < 4; ++k)
       {
         const glm::dvec3& point = points[static_cast<std::size_t>(tetrahedron[k])];
-        piece.Rest[k] = this->Grid.GetIndex(point);
+        piece.Rest[k] = this->Grid.ToIndex(point);
         piece.Weights[k] = { { static_cast<float>(point.x), static_cast<float>(point.y),
           static_cast<float>(point.z), 0.0F } };
       }
@@ -142,7 +119,7 @@ public:
   }
 
 private:
-  const FieldGrid& Grid;
+  const FieldTransform& Grid;
   glm::dvec3 Step; // size of a cell, in steps between points of the field
   glm::i64vec3 Cells;
 };
@@ -157,8 +134,8 @@ MeshBoundary FindFieldBoundary(
   {
     return MeshBoundary();
   }
-  const FieldGrid grid(field);
-  if (!(std::abs(glm::determinant(grid.ToField)) > 0.0))
+  const FieldTransform grid(field);
+  if (!(std::abs(glm::determinant(grid.Matrix)) > 0.0))
   {
     return MeshBoundary();
   }
@@ -166,7 +143,7 @@ MeshBoundary FindFieldBoundary(
   // A side of the field that lies on voxels is no boundary, since cells end there. Kernels treat
   // voxels up to FieldTolerance outside the field as inside.
   const double finest = std::min(
-    { glm::length(grid.ToIndex[0]), glm::length(grid.ToIndex[1]), glm::length(grid.ToIndex[2]) });
+    { glm::length(grid.Inverse[0]), glm::length(grid.Inverse[1]), glm::length(grid.Inverse[2]) });
   if (!finder.Cross(MakeSides(grid), std::min(BorderTolerance, 0.5 * FieldTolerance * finest)))
   {
     return MeshBoundary();

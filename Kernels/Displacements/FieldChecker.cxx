@@ -191,25 +191,23 @@ private:
 
 } // namespace
 
-bool AreVoxelsPoints(const VoxelGrid& voxelGrid, const DisplacementField& field)
+int GetFieldStride(const Extent& voxels, const std::array<double, 12>& indexToField,
+  const std::array<int, 3>& dimensions)
 {
+  const double stride = indexToField[0];
+  bool found = stride >= 1.0 && stride == std::floor(stride) && stride <= dimensions[0] &&
+    GetNumberOfPoints(voxels) > 0;
   for (int axis = 0; axis < 3; ++axis)
   {
-    const double* row = &field.IndexToField[4 * axis];
+    const double* row = &indexToField[4 * axis];
     for (int k = 0; k < 3; ++k)
     {
-      if (row[k] != (axis == k ? 1.0 : 0.0))
-      {
-        return false;
-      }
+      found = found && row[k] == (axis == k ? stride : 0.0);
     }
-    if (row[3] != std::round(row[3]) || voxelGrid.VertexExtent[2 * axis] + row[3] < 0.0 ||
-      voxelGrid.VertexExtent[2 * axis + 1] + row[3] >= field.Dimensions[axis])
-    {
-      return false;
-    }
+    found = found && row[3] == std::floor(row[3]) && stride * voxels[2 * axis] + row[3] >= 0.0 &&
+      stride * voxels[2 * axis + 1] + row[3] < dimensions[axis];
   }
-  return GetNumberOfPoints(voxelGrid.VertexExtent) > 0;
+  return found ? static_cast<int>(stride) : 0;
 }
 
 std::vector<unsigned char> FieldChecker::FindChanged(

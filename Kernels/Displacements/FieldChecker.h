@@ -4,10 +4,12 @@
 
 #include "DeformVolumeExport.h"
 #include "DisplacementField.h"
+#include "Extent.h"
 #include "IndexBounds.h"
 #include "PointRanges.h"
 #include "VoxelGrid.h"
 
+#include <array>
 #include <vector>
 
 namespace deformvolume
@@ -22,9 +24,16 @@ struct FieldCheckResult
   IndexBounds Bounds;
 };
 
-/// Whether each voxel is a point of a field.
-DEFORMVOLUME_EXPORT bool AreVoxelsPoints(
-  const VoxelGrid& voxelGrid, const DisplacementField& field);
+/// Returns n if every n-th point of a field on each axis is a voxel, and all voxels are points of
+/// the field; otherwise 0. indexToField: see DisplacementField.
+DEFORMVOLUME_EXPORT int GetFieldStride(const Extent& voxels,
+  const std::array<double, 12>& indexToField, const std::array<int, 3>& dimensions);
+
+/// Whether each voxel is a point of a field, and each point between voxels is a voxel.
+inline bool AreVoxelsPoints(const VoxelGrid& voxelGrid, const DisplacementField& field)
+{
+  return GetFieldStride(voxelGrid.VertexExtent, field.IndexToField, field.Dimensions) == 1;
+}
 
 /// Checks the vectors of a field in which each voxel is a point, and computes the bounds of the
 /// deformed voxels. Later calls process only vectors that have changed.

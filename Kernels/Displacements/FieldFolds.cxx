@@ -2,7 +2,7 @@
 #include "FieldFolds.h"
 
 #include "FiveTetrahedra.h"
-#include "IndexBounds.h" // for GetVector and GetVoxelsToField
+#include "IndexBounds.h" // for GetVector and FieldTransform
 #include "ParallelFor.h"
 
 #include <glm/geometric.hpp>
@@ -75,7 +75,7 @@ private:
 RowCounter::RowCounter(const DisplacementField& field)
   : Field(field)
   , Size(static_cast<std::size_t>(field.Dimensions[0]))
-  , ToField(GetVoxelsToField(field))
+  , ToField(FieldTransform(field).Matrix)
   , Changes(3 * this->Size)
 {
   float largestSum = 0.0F;

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <string>
 
@@ -131,26 +130,20 @@ void VectorConverter::Check(const std::optional<PointRanges>& changes, const cha
   DisplacementField field = this->Field;
   field.Vectors = this->Vectors->Read();
   const std::size_t count = this->Vectors->GetNumberOfPoints();
-  std::atomic<std::size_t> bad{ count };
+  std::size_t bad = count;
   for (const auto& range : changes ? *changes : PointRanges{ { { 0, count } } })
   {
-    ParallelForParts(range[1] - range[0], 1 << 14,
-      [&](std::size_t begin, std::size_t end)
+    const std::size_t size = range[1] - range[0];
+    const std::size_t found = FindFirst(size, 1 << 14,
+      [&](std::size_t i)
       {
-        for (std::size_t point = range[0] + begin; point < range[0] + end; ++point)
-        {
-          const std::array<float, 3> moved =
-            GetDisplacement(field, static_cast<std::int64_t>(point));
-          const float largest =
-            std::max({ std::abs(moved[0]), std::abs(moved[1]), std::abs(moved[2]) });
-          const float sum = moved[0] + moved[1] + moved[2]; // NaN if a component is NaN
-          if (!(largest <= LargestDisplacement) || std::isnan(sum))
-          {
-            Lower(bad, point);
-            return;
-          }
-        }
+        const std::array<float, 3> moved =
+          GetDisplacement(field, static_cast<std::int64_t>(range[0] + i));
+        // The negated comparison is true for NaN, too.
+        return std::any_of(moved.begin(), moved.end(),
+          [](float component) { return !(std::abs(component) <= LargestDisplacement); });
       });
+    bad = found < size ? std::min(bad, range[0] + found) : bad;
   }
   if (bad < count)
   {

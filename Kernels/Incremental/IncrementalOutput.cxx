@@ -8,11 +8,11 @@
 #include "OutputPatches.h"
 #include "OutputSlab.h"
 #include "ParallelFor.h"
+#include "Stopwatch.h"
 #include "WorkDevice.h"
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -21,13 +21,6 @@ namespace deformvolume
 {
 namespace
 {
-
-using Clock = std::chrono::steady_clock;
-
-double GetSecondsSince(const Clock::time_point& begin)
-{
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 // Revisions are unique in a process, so that an object that replaces another one does not repeat
 // its revisions.
@@ -72,14 +65,14 @@ void IncrementalOutput::Start(
   if (source.IsWrittenInPart())
   {
     // Find all boxes now: the old positions of the points will be overwritten.
-    const auto begin = Clock::now();
+    const Stopwatch watch;
     if (!this->Changes.HasPoints())
     {
       this->Changes.SetPoints(source.MakeBrickPoints());
     }
     source.WithDisplacements([this](const Displacements& displacements, std::size_t)
       { this->Changes.FindAllBoxes(displacements); });
-    report.ResamplingTime += GetSecondsSince(begin);
+    report.ResamplingTime += watch.GetSeconds();
   }
 }
 
@@ -220,7 +213,7 @@ bool IncrementalOutput::Update(const DeformRequest& request, const DisplacementS
 bool IncrementalOutput::TryUpdate(const DeformRequest& request, const DisplacementSource& source,
   ExactResampler& resampler, DeformReport& report)
 {
-  const auto begin = Clock::now();
+  const Stopwatch planning;
   if (!this->Changes.HasPoints())
   {
     this->Changes.SetPoints(source.MakeBrickPoints());
@@ -258,7 +251,7 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
     this->CopyLastOutput(request);
   }
   const std::uint64_t before = countCovered();
-  report.ResamplingTime += GetSecondsSince(begin);
+  report.ResamplingTime += planning.GetSeconds();
   const std::optional<ExactResampler::UpdatedOutput> updated =
     resampler.UpdateOutput(request, plan.Bricks, plan.Patches);
   if (!updated)
@@ -266,17 +259,17 @@ bool IncrementalOutput::TryUpdate(const DeformRequest& request, const Displaceme
     return false;
   }
   const SlabCounts& counts = updated->Counts;
-  const auto done = Clock::now();
+  const Stopwatch reading;
   const Extent changed = this->Changes.GetChangedExtent();
   if (!stays)
   {
     resampler.GetTarget(0).Read(this->Device.GetReadQueue(), changed);
     resampler.FinishReading();
   }
-  report.TransferTime += GetSecondsSince(done);
-  const auto read = Clock::now();
+  report.TransferTime += reading.GetSeconds();
+  const Stopwatch counting;
   const std::uint64_t covered = this->LastCovered - before + countCovered();
-  report.ResamplingTime += GetSecondsSince(read);
+  report.ResamplingTime += counting.GetSeconds();
   const BoundaryCells& boundary = resampler.GetBoundary();
   const std::uint64_t byCells = covered - boundary.GetNumberOfCovered();
   if (!hadWinners && (counts.NeedWinners(byCells) || (inside && counts.Writes != byCells)))

@@ -24,14 +24,6 @@ constexpr double Tolerance = 1e-3;
 
 using Corners = std::array<glm::dvec3, 4>;
 
-Corners GetCorners(const ElasticBody& body, const Tetrahedron& tetrahedron)
-{
-  Corners corners;
-  std::transform(tetrahedron.begin(), tetrahedron.end(), corners.begin(),
-    [&](std::int32_t node) { return body.Points[static_cast<std::size_t>(node)]; });
-  return corners;
-}
-
 bool IsAbout(double length, double wanted)
 {
   return std::abs(length - wanted) <= Tolerance * wanted;
@@ -84,7 +76,7 @@ double FindStableTimeStep(const ElasticBody& body, double cubeEdge)
 
 double FindCubeEdge(AbortCheck& abortCheck, const ElasticBody& body)
 {
-  const Corners first = GetCorners(body, body.Tetrahedra.front());
+  const Corners first = body.GetCorners(0);
   // Both kinds of tetrahedra have a face diagonal as their longest edge.
   double longest = 0.0;
   for (std::size_t i = 1; i < 4; ++i)
@@ -98,7 +90,7 @@ double FindCubeEdge(AbortCheck& abortCheck, const ElasticBody& body)
   ForItems(abortCheck, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
-      if (!IsFifth(GetCorners(body, body.Tetrahedra[t]), edge))
+      if (!IsFifth(body.GetCorners(t), edge))
       {
         throw Error("The tetrahedron with the points " + ListNodes(body.Tetrahedra[t]) +
           " is not a fifth of a cube" +

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MassSpringResults.h"
 
+#include "IndexBounds.h"
 #include "MassSpringNetwork.h"
 #include "ParallelFor.h"
 
@@ -15,13 +16,6 @@ namespace
 
 constexpr std::size_t TetrahedraAtOnce = 1024;
 
-double GetSignedVolume(const std::array<glm::dvec3, 4>& corners)
-{
-  return glm::dot(
-           glm::cross(corners[1] - corners[0], corners[2] - corners[0]), corners[3] - corners[0]) /
-    6.0;
-}
-
 // The stress of springs is the sum of force times edge vector (virial stress), divided by the
 // volume.
 ElementResults FindResults(const std::array<glm::dvec3, 4>& rest,
@@ -29,8 +23,8 @@ ElementResults FindResults(const std::array<glm::dvec3, 4>& rest,
 {
   constexpr int components[6][2] = { { 0, 0 }, { 1, 1 }, { 2, 2 }, { 0, 1 }, { 1, 2 }, { 0, 2 } };
   ElementResults results;
-  const double restVolume = GetSignedVolume(rest);
-  results.Determinant = GetSignedVolume(now) / restVolume;
+  const double restVolume = GetDeterminant(rest) / 6.0;
+  results.Determinant = GetDeterminant(now) / 6.0 / restVolume;
   const SpringStiffness stiffness = GetSpringStiffness(material, std::abs(restVolume), cubeEdge);
   const double growth = results.Determinant - 1.0;
   const double bulk = static_cast<double>(stiffness.Volume);
@@ -70,14 +64,11 @@ std::vector<ElementResults> ComputeMassSpringResults(
     {
       for (std::size_t t = first; t < last; ++t)
       {
-        std::array<glm::dvec3, 4> rest;
+        const std::array<glm::dvec3, 4> rest = body.GetCorners(t);
         std::array<glm::dvec3, 4> now;
         for (std::size_t i = 0; i < 4; ++i)
         {
-          const auto node = static_cast<std::size_t>(body.Tetrahedra[t][i]);
-          const float* displacement = displacements.data() + 3 * node;
-          rest[i] = body.Points[node];
-          now[i] = rest[i] + glm::dvec3(displacement[0], displacement[1], displacement[2]);
+          now[i] = rest[i] + GetVector(displacements.data(), body.Tetrahedra[t][i]);
         }
         results[t] = FindResults(rest, now, body.GetMaterial(t), cubeEdge);
       }

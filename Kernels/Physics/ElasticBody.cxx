@@ -21,19 +21,6 @@ namespace deformvolume
 namespace
 {
 
-std::array<glm::dvec3, 3> GetEdges(const ElasticBody& body, const Tetrahedron& tetrahedron)
-{
-  const auto point = [&](std::size_t i) -> const glm::dvec3&
-  { return body.Points[static_cast<std::size_t>(tetrahedron[i])]; };
-  return { point(1) - point(0), point(2) - point(0), point(3) - point(0) };
-}
-
-// Six times the signed volume. Negative if the order of nodes is reversed.
-double GetDeterminant(const std::array<glm::dvec3, 3>& edges)
-{
-  return glm::dot(glm::cross(edges[0], edges[1]), edges[2]);
-}
-
 void CheckPoints(const ElasticBody& body)
 {
   const auto bad = std::find_if_not(body.Points.begin(), body.Points.end(), IsFinite);
@@ -90,14 +77,12 @@ void CheckShapes(AbortCheck& abortCheck, const ElasticBody& body)
   ForItems(abortCheck, body.Tetrahedra.size(),
     [&](std::size_t t)
     {
-      std::array<glm::dvec3, 4> points{};
-      std::transform(body.Tetrahedra[t].begin(), body.Tetrahedra[t].end(), points.begin(),
-        [&](std::int32_t node) { return body.Points[static_cast<std::size_t>(node)]; });
+      const std::array<glm::dvec3, 4> points = body.GetCorners(t);
       if (IsFlat(points))
       {
         flat.Add(t);
       }
-      else if (GetDeterminant(GetEdges(body, body.Tetrahedra[t])) < 0.0)
+      else if (GetDeterminant(points) < 0.0)
       {
         inverted.Add(t);
       }
@@ -286,9 +271,7 @@ bool IsFlat(const std::array<glm::dvec3, 4>& points)
       longest = std::max(longest, glm::distance(points[i], points[j]));
     }
   }
-  const double determinant =
-    GetDeterminant({ points[1] - points[0], points[2] - points[0], points[3] - points[0] });
-  return !(std::abs(determinant) > leastHeight * longest * longest * longest);
+  return !(std::abs(GetDeterminant(points)) > leastHeight * longest * longest * longest);
 }
 
 void CheckBody(const ElasticBody& body, AbortCheck* abortCheck)
@@ -409,9 +392,10 @@ void CheckHeldNodes(const ElasticBody& body, const std::vector<HeldNode>& held)
 std::vector<double> GetVolumes(const ElasticBody& body)
 {
   std::vector<double> volumes(body.Tetrahedra.size());
-  std::transform(body.Tetrahedra.begin(), body.Tetrahedra.end(), volumes.begin(),
-    [&](const Tetrahedron& tetrahedron)
-    { return std::abs(GetDeterminant(GetEdges(body, tetrahedron))) / 6.0; });
+  for (std::size_t t = 0; t < volumes.size(); ++t)
+  {
+    volumes[t] = std::abs(GetDeterminant(body.GetCorners(t))) / 6.0;
+  }
   return volumes;
 }
 

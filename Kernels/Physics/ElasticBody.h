@@ -6,6 +6,7 @@
 #include "MidSideNodes.h"
 #include "Tetrahedron.h"
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include <array>
@@ -75,6 +76,13 @@ struct ElasticBody
   {
     return this->Materials[this->Materials.size() == 1 ? 0 : tetrahedron];
   }
+  /// The corners of a tetrahedron at rest.
+  std::array<glm::dvec3, 4> GetCorners(std::size_t tetrahedron) const
+  {
+    const Tetrahedron& nodes = this->Tetrahedra[tetrahedron];
+    const auto at = [&](std::size_t i) { return this->Points[static_cast<std::size_t>(nodes[i])]; };
+    return { { at(0), at(1), at(2), at(3) } };
+  }
   /// Whether a node is fixed.
   bool IsFixed(std::size_t node) const { return !this->Fixed.empty() && this->Fixed[node] != 0; }
 
@@ -124,6 +132,14 @@ DEFORMVOLUME_EXPORT glm::dvec3 GetUnitVector(const glm::dvec3& vector);
 /// ElasticBody::ParallelSine.
 DEFORMVOLUME_EXPORT std::array<glm::dvec3, 2> GetSlidingNormals(
   const ElasticBody& body, std::size_t node);
+
+/// Returns six times the signed volume of a tetrahedron: negative if the order of its corners is
+/// reversed.
+inline double GetDeterminant(const std::array<glm::dvec3, 4>& corners)
+{
+  return glm::dot(
+    glm::cross(corners[1] - corners[0], corners[2] - corners[0]), corners[3] - corners[0]);
+}
 
 /// Whether a tetrahedron has almost no volume: its determinant is at most 1e-6 of the cube of its
 /// longest edge.

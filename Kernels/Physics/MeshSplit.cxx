@@ -10,8 +10,6 @@
 #include "SheetCrossings.h"
 #include "SplitRegion.h"
 
-#include <glm/common.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -68,17 +66,12 @@ void CheckPairs(const std::vector<TetrahedronPair>& pairs, std::size_t numberOfT
 MeshSteps FindSteps(
   const std::vector<glm::dvec3>& positions, const std::vector<Tetrahedron>& tetrahedra)
 {
-  struct Bounds
-  {
-    glm::dvec3 Low{ std::numeric_limits<double>::infinity() };
-    glm::dvec3 High{ -std::numeric_limits<double>::infinity() };
-  };
-  std::vector<Bounds> parts((tetrahedra.size() + TetrahedraOfPart - 1) / TetrahedraOfPart);
+  std::vector<IndexBounds> parts((tetrahedra.size() + TetrahedraOfPart - 1) / TetrahedraOfPart);
   ParallelForParts(tetrahedra.size(), TetrahedraOfPart,
     [&](std::size_t begin, std::size_t end)
     {
       CheckTetrahedra(tetrahedra.data(), begin, end, positions.size());
-      Bounds bounds;
+      IndexBounds bounds;
       for (std::size_t t = begin; t < end; ++t)
       {
         for (const std::int32_t node : tetrahedra[t])
@@ -91,19 +84,17 @@ MeshSteps FindSteps(
             throw Error("The position of node " + std::to_string(node) +
               " of the deformation mesh is not finite.");
           }
-          bounds.Low = glm::min(bounds.Low, position);
-          bounds.High = glm::max(bounds.High, position);
+          bounds.Add(position);
         }
       }
       parts[begin / TetrahedraOfPart] = bounds;
     });
-  Bounds all;
-  for (const Bounds& part : parts)
+  IndexBounds all;
+  for (const IndexBounds& part : parts)
   {
-    all.Low = glm::min(all.Low, part.Low);
-    all.High = glm::max(all.High, part.High);
+    all.Add(part);
   }
-  return MeshSteps(all.Low, all.High);
+  return MeshSteps(all.Min, all.Max);
 }
 
 enum SplitState : unsigned char

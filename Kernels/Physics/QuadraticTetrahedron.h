@@ -91,7 +91,7 @@ struct QuadraticTetrahedron
   /// Whether the order of the corners is reversed, so that the signed volume is negative.
   static bool IsMirrored(const std::array<glm::dvec3, NumberOfNodes>& points)
   {
-    return GetDeterminant(points[0], points[1], points[2], points[3]) < 0.0;
+    return GetDeterminant({ { points[0], points[1], points[2], points[3] } }) < 0.0;
   }
 
   /// Whether one of the twelve linear tetrahedra into which vtkDeformVolumeFilter splits this one
@@ -106,9 +106,10 @@ struct QuadraticTetrahedron
     constexpr std::size_t faces[4][3] = { { 4, 5, 6 }, { 4, 7, 8 }, { 5, 8, 9 }, { 6, 9, 7 } };
     const glm::dvec3 center =
       0.25 * (p[4] + p[5] + p[6] + p[7] + p[8] + p[9]) - 0.125 * (p[0] + p[1] + p[2] + p[3]);
-    const auto isBad =
-      [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d)
-    { return (isMirrored ? -1.0 : 1.0) * GetDeterminant(a, b, c, d) < 0.0; };
+    const auto isBad = [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
+                         const glm::dvec3& d) {
+      return (isMirrored ? -1.0 : 1.0) * GetDeterminant({ { a, b, c, d } }) < 0.0;
+    };
     for (const std::size_t(&c)[4] : corners)
     {
       if (isBad(p[c[0]], p[c[1]], p[c[2]], p[c[3]]) || isBad(p[c[1]], p[c[2]], p[c[3]], center))
@@ -143,14 +144,6 @@ struct QuadraticTetrahedron
         weights[static_cast<int>(TetrahedronEdges[edge][1])];
     }
     return shares;
-  }
-
-private:
-  // The determinant of the edges from a to b, c and d.
-  static double GetDeterminant(
-    const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d)
-  {
-    return glm::dot(glm::cross(b - a, c - a), d - a);
   }
 };
 

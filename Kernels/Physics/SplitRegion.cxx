@@ -49,24 +49,14 @@ SnappedBox GetEnlargedBox(
 template <typename IsChosen>
 std::vector<std::size_t> SelectNumbers(std::size_t count, IsChosen&& isChosen)
 {
-  std::vector<std::vector<std::size_t>> parts((count + TetrahedraAtOnce - 1) / TetrahedraAtOnce);
-  ParallelForParts(count, TetrahedraAtOnce,
-    [&](std::size_t begin, std::size_t end)
+  return CollectItems<std::size_t>(count, TetrahedraAtOnce,
+    [&](std::size_t t, std::vector<std::size_t>& chosen)
     {
-      for (std::size_t t = begin; t < end; ++t)
+      if (isChosen(t))
       {
-        if (isChosen(t))
-        {
-          parts[begin / TetrahedraAtOnce].push_back(t);
-        }
+        chosen.push_back(t);
       }
     });
-  std::vector<std::size_t> all;
-  for (const std::vector<std::size_t>& part : parts)
-  {
-    all.insert(all.end(), part.begin(), part.end());
-  }
-  return all;
 }
 
 } // namespace

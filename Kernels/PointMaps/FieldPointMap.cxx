@@ -155,11 +155,7 @@ public:
   /// Returns the bounding box of a deformed cell, enlarged by a tolerance.
   IndexBounds GetBox(const Corners& moved) const
   {
-    IndexBounds box;
-    for (const glm::dvec3& corner : moved)
-    {
-      box.Add(corner);
-    }
+    IndexBounds box = deformvolume::GetBox(moved);
     // The tolerance is relative to the size of the deformed cell.
     const glm::dvec3 margin =
       2.0 * (this->Field.Tolerance + CellFaceTolerance) * (box.Max - box.Min);

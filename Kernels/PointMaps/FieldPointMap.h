@@ -4,6 +4,7 @@
 
 #include "OutsideVoxels.h"
 #include "PointMap.h"
+#include "VectorView.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -23,11 +24,8 @@ struct WorldField
   std::array<int, 3> Dimensions{ { 0, 0, 0 } };
   /// Transform from indices to world coordinates. The first point has the index 0.
   glm::dmat4 IndexToWorld{ 1.0 };
-  /// Vectors in single precision: three values per point, with x varying fastest. Set either Floats
-  /// or Doubles.
-  const float* Floats = nullptr;
-  /// Vectors in double precision.
-  const double* Doubles = nullptr;
+  /// Vectors, with x varying fastest.
+  VectorView Vectors;
   /// Factor by which all vectors are multiplied. Default: 1.
   double Scale = 1.0;
   /// One byte per point. 1: its vector is undefined. Null: all vectors are defined.
@@ -42,11 +40,7 @@ struct WorldField
     {
       return glm::dvec3(0.0);
     }
-    const std::int64_t first = 3 * point;
-    return this->Scale *
-      (this->Floats
-          ? glm::dvec3(this->Floats[first], this->Floats[first + 1], this->Floats[first + 2])
-          : glm::dvec3(this->Doubles[first], this->Doubles[first + 1], this->Doubles[first + 2]));
+    return this->Scale * this->Vectors.Get(static_cast<std::size_t>(point));
   }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LookupBounds.h"
 
-#include "IndexBounds.h" // for GetVoxelsToField and Interpolate
+#include "IndexBounds.h" // for FieldTransform and Interpolate
 #include "ParallelFor.h"
 #include "RasterParameters.h"
 
@@ -38,14 +38,8 @@ public:
     : Field(field)
     , Transform(GetOutputTransform(voxelGrid))
     , Volume(GetBox(voxelGrid))
+    , Grid(field)
   {
-    this->ToField = GetVoxelsToField(field);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      this->Offset[axis] = field.IndexToField[4 * axis + 3];
-      this->Last[axis] = field.Dimensions[axis] - 1;
-    }
-    this->FromField = glm::inverse(this->ToField);
     // As in the kernel: half a step of positions, which are rounded to 1/256 output voxel.
     const glm::dvec3 tolerance = this->Transform.GetTolerance(1.0 / 256.0);
     this->Volume.Min -= tolerance;
@@ -54,7 +48,7 @@ public:
 
   glm::ivec3 GetNumberOfBlocks() const
   {
-    return glm::max(glm::ivec3(1), (glm::ivec3(this->Last) + BlockSize - 1) / BlockSize);
+    return glm::max(glm::ivec3(1), (glm::ivec3(this->Grid.Last) + BlockSize - 1) / BlockSize);
   }
 
   /// Returns the output voxels in a block of the field that may be mapped into the volume. Returns
@@ -62,7 +56,7 @@ public:
   IndexBounds GetCandidates(const glm::ivec3& block, const IndexBounds& known) const
   {
     const glm::ivec3 first = block * BlockSize;
-    const glm::ivec3 last = glm::min(first + BlockSize, glm::ivec3(this->Last));
+    const glm::ivec3 last = glm::min(first + BlockSize, glm::ivec3(this->Grid.Last));
     bool hasBorder = false;
     IndexBounds box = this->GetBlock(first, last, hasBorder);
     // Most blocks are skipped before their vectors are read.
@@ -92,10 +86,10 @@ public:
 
   bool IsCovered(const glm::dvec3& voxel) const
   {
-    const glm::dvec3 position = this->ToField * voxel + this->Offset;
+    const glm::dvec3 position = this->Grid.ToField(voxel);
     if (!this->Field.Extrapolate &&
       (glm::any(glm::lessThan(position, glm::dvec3(-DEFORMVOLUME_LOOKUP_TOLERANCE))) ||
-        glm::any(glm::greaterThan(position, this->Last + DEFORMVOLUME_LOOKUP_TOLERANCE))))
+        glm::any(glm::greaterThan(position, this->Grid.Last + DEFORMVOLUME_LOOKUP_TOLERANCE))))
     {
       return false;
     }
@@ -126,13 +120,13 @@ private:
       {
         const bool upper = (corner >> axis & 1) != 0;
         const int gridPoint = upper ? last[axis] : first[axis];
-        const bool isBorder = gridPoint == (upper ? static_cast<int>(this->Last[axis]) : 0);
+        const bool isBorder = gridPoint == (upper ? static_cast<int>(this->Grid.Last[axis]) : 0);
         const double margin =
           isBorder ? (this->Field.Extrapolate ? Infinity : DEFORMVOLUME_LOOKUP_TOLERANCE) : 0.0;
         point[axis] = gridPoint + (upper ? margin : -margin);
         hasBorder = hasBorder || isBorder;
       }
-      box.Add(this->FromField * (point - this->Offset));
+      box.Add(this->Grid.ToIndex(point));
     }
     return box;
   }
@@ -146,17 +140,15 @@ private:
 
   glm::dvec3 Interpolate(const glm::dvec3& position) const
   {
-    return deformvolume::Interpolate(this->Field, glm::clamp(position, glm::dvec3(0.0), this->Last),
+    return deformvolume::Interpolate(this->Field,
+      glm::clamp(position, glm::dvec3(0.0), this->Grid.Last),
       [this](std::int64_t point) { return GetVector(this->Field.Vectors, point); });
   }
 
   const DisplacementField& Field;
   OutputTransform Transform;
   IndexBounds Volume; // the range of rest positions, in indices of the volume
-  glm::dmat3 ToField{ 1.0 };
-  glm::dmat3 FromField{ 1.0 };
-  glm::dvec3 Offset{ 0.0 };
-  glm::dvec3 Last{ 0.0 };
+  FieldTransform Grid;
 };
 
 /// Adds the covered voxels of a box to bounds. Tests only voxels that would extend the bounds.

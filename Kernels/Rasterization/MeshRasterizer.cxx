@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshRasterizer.h"
 
-#include "CompilationWatch.h"
 #include "DeviceVolume.h"
 #include "Error.h"
 #include "HostMemory.h"
-#include "IndexBounds.h" // for GetOutputTransform
+#include "IndexBounds.h"
 #include "KernelMaking.h"
+#include "Stopwatch.h"
 #include "WorkDevice.h"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -21,23 +22,6 @@ namespace deformvolume
 {
 namespace
 {
-
-using Clock = std::chrono::steady_clock;
-
-/// Measures seconds, without the time of kernel compilation.
-class Stopwatch
-{
-public:
-  double GetSeconds() const
-  {
-    const std::chrono::duration<double> passed = Clock::now() - this->Begin;
-    return passed.count() - (CompilationWatch::GetCurrentSeconds() - this->Compiled);
-  }
-
-private:
-  Clock::time_point Begin = Clock::now();
-  double Compiled = CompilationWatch::GetCurrentSeconds();
-};
 
 // The largest position, in output voxels. Positions in 1/256 voxel and their differences fit into
 // 32 bits.
@@ -49,18 +33,8 @@ constexpr int LaunchesPerSlab = 32;
 // Six times the signed volume of a tetrahedron at rest.
 double GetRestVolume(const Tetrahedron& tetrahedron, const double* nodes)
 {
-  double sides[3][3];
-  for (int side = 0; side < 3; ++side)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      sides[side][axis] =
-        nodes[3 * tetrahedron[side + 1] + axis] - nodes[3 * tetrahedron[0] + axis];
-    }
-  }
-  return sides[0][0] * (sides[1][1] * sides[2][2] - sides[1][2] * sides[2][1]) +
-    sides[0][1] * (sides[1][2] * sides[2][0] - sides[1][0] * sides[2][2]) +
-    sides[0][2] * (sides[1][0] * sides[2][1] - sides[1][1] * sides[2][0]);
+  const auto node = [&](std::size_t k) { return GetVector(nodes, tetrahedron[k]); };
+  return glm::dot(node(1) - node(0), glm::cross(node(2) - node(0), node(3) - node(0)));
 }
 
 void Send(WorkDevice& device, cl::Buffer& buffer, const void* data, std::uint64_t bytes)
@@ -132,8 +106,8 @@ void MeshRasterizer::SetDisplacements(const float* displacements)
   this->FarthestPosition = 0.0;
   for (std::size_t node = 0; node < count; ++node)
   {
-    const double* rest = &this->RestNodes[3 * node];
-    const glm::dvec3 restPosition = transform.ToOutput(glm::dvec3(rest[0], rest[1], rest[2]));
+    const glm::dvec3 restPosition =
+      transform.ToOutput(GetVector(this->RestNodes.data(), static_cast<std::int64_t>(node)));
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
       const float displacement = displacements[3 * node + axis];

@@ -77,9 +77,7 @@ public:
     : Field(field)
     , IsMapped(isMapped)
     , Undefined(undefined)
-    , ToField(GetVoxelsToField(field))
-    , Offset(field.IndexToField[3], field.IndexToField[7], field.IndexToField[11])
-    , Last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1)
+    , Transform(field)
   {
   }
 
@@ -87,8 +85,9 @@ public:
   // applies.
   glm::dmat3 GetDerivative(const glm::dvec3& index) const
   {
-    const glm::dvec3 position = this->ToField * index + this->Offset;
-    const glm::dvec3 beyond = glm::max(glm::max(-position, position - this->Last), glm::dvec3(0.0));
+    const glm::dvec3 position = this->Transform.ToField(index);
+    const glm::dvec3 beyond =
+      glm::max(glm::max(-position, position - this->Transform.Last), glm::dvec3(0.0));
     glm::dmat3 derivative(0.0);
     if (this->Field.Extrapolate && std::max({ beyond.x, beyond.y, beyond.z }) > FieldTolerance)
     {
@@ -98,13 +97,13 @@ public:
         {
           glm::dvec3 moved = index;
           moved[axis] = shifted;
-          return this->ToField * moved + this->Offset;
+          return this->Transform.ToField(moved);
         };
         // A shift must not cross a border of the field that the voxel is within.
         const auto shift = [&](double distance)
         {
           const glm::dvec3 moved = getPosition(index[axis] + distance);
-          const glm::dvec3 after = glm::max(-moved, moved - this->Last);
+          const glm::dvec3 after = glm::max(-moved, moved - this->Transform.Last);
           const auto crosses = glm::lessThan(beyond, glm::dvec3(FieldTolerance)) &&
             glm::greaterThan(after, glm::dvec3(FieldTolerance));
           return glm::any(crosses) ? index[axis] : index[axis] + distance;
@@ -122,16 +121,16 @@ public:
     for (int axis = 0; axis < 3; ++axis)
     {
       const double halfStep = 0.5 *
-        std::max({ std::abs(this->ToField[0][axis]), std::abs(this->ToField[1][axis]),
-          std::abs(this->ToField[2][axis]) });
-      const glm::dvec3 middle = glm::clamp(position, glm::dvec3(0.0), this->Last);
+        std::max({ std::abs(this->Transform.Matrix[0][axis]),
+          std::abs(this->Transform.Matrix[1][axis]), std::abs(this->Transform.Matrix[2][axis]) });
+      const glm::dvec3 middle = glm::clamp(position, glm::dvec3(0.0), this->Transform.Last);
       alongField[axis] = this->GetSlopeAt(middle, axis, halfStep);
       if (IsUndefined(alongField[axis]))
       {
         alongField[axis] = this->GetSlopeBeside(middle, axis, halfStep);
       }
     }
-    return alongField * this->ToField;
+    return alongField * this->Transform.Matrix;
   }
 
 private:
@@ -139,7 +138,7 @@ private:
   glm::dvec3 GetSlopeAt(const glm::dvec3& middle, int axis, double halfStep) const
   {
     return GetSlope(std::max(middle[axis] - halfStep, 0.0), middle[axis],
-      std::min(middle[axis] + halfStep, this->Last[axis]),
+      std::min(middle[axis] + halfStep, this->Transform.Last[axis]),
       [&](double shifted)
       {
         glm::dvec3 moved = middle;
@@ -154,12 +153,12 @@ private:
   {
     glm::dvec3 sum(0.0);
     double count = 0.0;
-    for (int neighbor = 0; neighbor < 9 && this->Last[axis] > 0.0; ++neighbor)
+    for (int neighbor = 0; neighbor < 9 && this->Transform.Last[axis] > 0.0; ++neighbor)
     {
       glm::dvec3 moved = middle;
       moved[(axis + 1) % 3] += neighbor % 3 - 1;
       moved[(axis + 2) % 3] += neighbor / 3 - 1;
-      moved = glm::clamp(moved, glm::dvec3(0.0), this->Last);
+      moved = glm::clamp(moved, glm::dvec3(0.0), this->Transform.Last);
       const glm::dvec3 slope = this->GetSlopeAt(moved, axis, halfStep);
       if (!IsUndefined(slope))
       {
@@ -197,16 +196,14 @@ private:
   {
     const double weight = GetWeightBeyond(this->Field, position, FieldTolerance);
     return weight > 0.0
-      ? weight * this->Interpolate(glm::clamp(position, glm::dvec3(0.0), this->Last))
+      ? weight * this->Interpolate(glm::clamp(position, glm::dvec3(0.0), this->Transform.Last))
       : glm::dvec3(0.0); // even if the point on the border is undefined
   }
 
   const DisplacementField& Field;
   const bool IsMapped; // whether the matrix of the field is applied to the vectors
   const std::vector<unsigned char> Undefined;
-  const glm::dmat3 ToField;
-  const glm::dvec3 Offset;
-  const glm::dvec3 Last;
+  const FieldTransform Transform;
 };
 
 } // namespace

@@ -65,24 +65,6 @@ std::array<double, 12> GetIndexToField(
   return indexToField;
 }
 
-int GetFieldStride(const Extent& voxels, const std::array<double, 12>& indexToField,
-  const std::array<int, 3>& dimensions)
-{
-  const double stride = indexToField[0];
-  bool found = stride > 1.0 && stride == std::floor(stride) && stride < dimensions[0];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const double* row = &indexToField[4 * axis];
-    for (int k = 0; k < 3; ++k)
-    {
-      found = found && row[k] == (axis == k ? stride : 0.0);
-    }
-    found = found && row[3] == std::floor(row[3]) && stride * voxels[2 * axis] + row[3] >= 0.0 &&
-      stride * voxels[2 * axis + 1] + row[3] < dimensions[axis];
-  }
-  return found ? static_cast<int>(stride) : 1;
-}
-
 ImageGeometry GetGridAtRest(const ImageGeometry& volume)
 {
   // A single cell, from one voxel before the first voxel to one voxel past the last: all voxels lie

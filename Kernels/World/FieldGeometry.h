@@ -19,11 +19,6 @@ namespace deformvolume
 DEFORMVOLUME_EXPORT std::array<double, 12> GetIndexToField(
   const ImageGeometry& field, const ImageGeometry& volume, const OutputMap* toOutput);
 
-/// Returns n if every n-th point of a field on each axis is a voxel, and all voxels are points of
-/// the field; otherwise 1. indexToField: see DisplacementField.
-DEFORMVOLUME_EXPORT int GetFieldStride(const Extent& voxels,
-  const std::array<double, 12>& indexToField, const std::array<int, 3>& dimensions);
-
 /// Returns a grid of 2 x 2 x 2 points that contains a volume. A field of zeros on this grid is used
 /// if there is no deformation.
 DEFORMVOLUME_EXPORT ImageGeometry GetGridAtRest(const ImageGeometry& volume);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IndexDeformation.h"
 
+#include "IndexBounds.h"
 #include "ParallelFor.h"
 
 #include <algorithm>
@@ -96,12 +97,8 @@ void IndexDeformation::UpdateDerived(
     {
       for (std::size_t i = begin; i < end; ++i)
       {
-        const glm::vec3 sum(derived.Sum(i,
-          [&](std::int32_t node)
-          {
-            const float* vector = this->Vectors.data() + 3 * static_cast<std::size_t>(node);
-            return glm::dvec3(vector[0], vector[1], vector[2]);
-          }));
+        const glm::vec3 sum(
+          derived.Sum(i, [&](std::int32_t node) { return GetVector(this->Vectors.data(), node); }));
         float* last = this->Vectors.data() + 3 * (count + i);
         if (std::memcmp(last, &sum.x, 3 * sizeof(float)) != 0)
         {

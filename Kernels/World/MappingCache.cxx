@@ -2,11 +2,11 @@
 #include "MappingCache.h"
 
 #include "Error.h"
+#include "Stopwatch.h"
 #include "VertexRuns.h"
 #include "WorldBoxes.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 namespace deformvolume
@@ -14,27 +14,6 @@ namespace deformvolume
 
 namespace
 {
-
-// Adds the seconds between its construction and its destruction to a sum.
-class Stopwatch
-{
-public:
-  explicit Stopwatch(double& sum)
-    : Sum(sum)
-  {
-  }
-  ~Stopwatch()
-  {
-    this->Sum +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - this->Start).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
-private:
-  double& Sum;
-  const std::chrono::steady_clock::time_point Start = std::chrono::steady_clock::now();
-};
 
 std::uint64_t EstimateRunBytes(const StaticMappingBuilder& builder, const MappedVolume& volume)
 {
@@ -82,9 +61,11 @@ std::uint64_t MappingCache::GetRunBytes(const MeshAtRest& mesh, const MappedVolu
   {
     return this->RunBytes;
   }
-  const Stopwatch stopwatch(this->Time);
+  const Stopwatch watch;
   const Key key{ mesh.Owner, mesh.ShapeVersion, volume };
-  return EstimateRunBytes(this->GetBuilder(mesh, key), volume);
+  const std::uint64_t bytes = EstimateRunBytes(this->GetBuilder(mesh, key), volume);
+  this->Time += watch.GetSeconds();
+  return bytes;
 }
 
 void MappingCache::Update(
@@ -94,7 +75,7 @@ void MappingCache::Update(
   {
     return;
   }
-  const Stopwatch stopwatch(this->Time);
+  const Stopwatch watch;
   const std::vector<Tetrahedron>& tetrahedra = mesh.Tetrahedra;
   if (progress && !progress(0.0))
   {
@@ -129,6 +110,7 @@ void MappingCache::Update(
   this->MappingKey = key;
   ++this->Version;
   ++this->NumberOfBuilds;
+  this->Time += watch.GetSeconds();
 }
 
 void MappingCache::ReleaseVoxels()

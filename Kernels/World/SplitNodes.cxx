@@ -44,18 +44,15 @@ void SplitNodes::Update(const MeshAtRest& mesh)
 
 std::string SplitNodes::Describe(const float* displacements, const Extent& voxels) const
 {
-  const auto get = [displacements](std::int32_t node)
-  {
-    const float* vector = displacements + 3 * static_cast<std::size_t>(node);
-    return glm::dvec3(vector[0], vector[1], vector[2]);
-  };
   // The nodes at the ends of a gap may not have moved, and lie between the voxels.
   IndexBounds split;
   bool isTorn = false;
   for (const Pair& pair : this->Pairs)
   {
     split.Add(pair.Position);
-    isTorn = isTorn || glm::distance(get(pair.First), get(pair.Second)) > 1.0;
+    isTorn = isTorn ||
+      glm::distance(GetVector(displacements, pair.First), GetVector(displacements, pair.Second)) >
+        1.0;
   }
   const IndexBounds box = GetBox(voxels);
   const bool isBetween =

@@ -102,7 +102,7 @@ void VectorField::Locate(const ImageGeometry& volume, const OutputMap& toOutput)
   this->OnDevice.reset();
   this->ScannedRevision = 0;
   if (this->Shared &&
-    GetFieldStride(volume.PointExtent, this->IndexToField, this->FieldDimensions) == 1)
+    GetFieldStride(volume.PointExtent, this->IndexToField, this->FieldDimensions) <= 1)
   {
     this->MatrixOnDevice = GetRows(GetToDisplacement(volume, toOutput, 1.0));
     this->OnDevice = this->Shared;
@@ -136,7 +136,7 @@ void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput
           {
             const std::size_t point = taken.empty() ? i : taken[i];
             vectors[i - begin] = this->WorldVectors.Get(point);
-            if (!IsFiniteVector(vectors[i - begin]))
+            if (!IsFinite(vectors[i - begin]))
             {
               Lower(notFinite, point);
             }
@@ -159,28 +159,11 @@ WorldField VectorField::GetWorldField()
   {
     this->WorldVectors.Data = this->Shared->Read();
   }
-  std::atomic<std::size_t> notFinite{ this->WorldVectors.Count };
-  ParallelForParts(this->WorldVectors.Count, VectorsPerPart,
-    [&](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        if (!IsFiniteVector(this->WorldVectors.Get(i)))
-        {
-          Lower(notFinite, i);
-        }
-      }
-    });
+  const std::size_t notFinite = FindFirst(this->WorldVectors.Count, VectorsPerPart,
+    [&](std::size_t i) { return !IsFinite(this->WorldVectors.Get(i)); });
   CheckFinite(notFinite, this->WorldVectors.Count);
   WorldField field = MakeWorldField(this->Grid);
-  if (this->WorldVectors.AreDoubles)
-  {
-    field.Doubles = static_cast<const double*>(this->WorldVectors.Data);
-  }
-  else
-  {
-    field.Floats = static_cast<const float*>(this->WorldVectors.Data);
-  }
+  field.Vectors = this->WorldVectors;
   return field;
 }
 
@@ -188,7 +171,7 @@ std::vector<std::size_t> VectorField::TakeVoxels(const Extent& voxels)
 {
   std::vector<std::size_t> taken;
   const int stride = GetFieldStride(voxels, this->IndexToField, this->FieldDimensions);
-  if (stride == 1)
+  if (stride <= 1)
   {
     return taken;
   }

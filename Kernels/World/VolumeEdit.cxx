@@ -5,10 +5,10 @@
 #include "SurfaceInterior.h"
 #include "WorldTool.h"
 
+#include <glm/ext/vector_int3_sized.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -17,9 +17,35 @@ namespace deformvolume
 namespace
 {
 
-VolumeEdit MakeEdit(SmoothCarving&& carving)
+// Returns a tool that contains the voxels with a label. distance: of all voxels from the boundary.
+CarvingTool MakeLabelTool(
+  const Extent& volume, const LabelReader& labels, double label, double distance)
 {
-  return { std::move(carving.Tetrahedra), std::move(carving.Distances), {} };
+  CarvingTool tool;
+  tool.Bounds = GetUnlimitedBounds();
+  tool.IsOfVertices = true;
+  tool.Function = [=](const glm::dvec3* points, std::size_t count, double* values)
+  {
+    for (std::size_t first = 0; first < count;)
+    {
+      // Labels of neighboring voxels are read at once.
+      std::size_t end = first + 1;
+      while (end < count && points[end] == points[end - 1] + glm::dvec3(1.0, 0.0, 0.0))
+      {
+        ++end;
+      }
+      const glm::i64vec3 voxel =
+        glm::i64vec3(points[first]) - glm::i64vec3(volume[0], volume[2], volume[4]);
+      labels((voxel.z * GetSize(volume, 1) + voxel.y) * GetSize(volume, 0) + voxel.x,
+        static_cast<std::int64_t>(end - first), values + first);
+      first = end;
+    }
+    std::transform(values, values + count, values,
+      [label](double value) { return value == label ? -1.0 : 1.0; });
+  };
+  tool.Distance = [distance](const glm::dvec3*, std::size_t count, double* distances)
+  { std::fill_n(distances, count, distance); };
+  return tool;
 }
 
 } // namespace
@@ -66,19 +92,20 @@ VolumeEdit EditFinder::Cut(const WorldSheet& sheet) const
   return edit;
 }
 
-VolumeEdit EditFinder::CarveInIndices(const CarvingTool& tool) const
+VolumeEdit EditFinder::CarveInIndices(
+  const CarvingTool& tool, const VertexPositions& vertices) const
 {
-  const VertexPositions& vertices = this->GetVertices();
-  if (this->IsSmooth)
+  if (!this->IsSmooth)
   {
-    return MakeEdit(FindSmoothCarving(vertices, tool, this->FarDistance, this->Progress));
+    return { FindCarvedTetrahedra(vertices, tool, this->Rule, this->Progress), {}, {} };
   }
-  return { FindCarvedTetrahedra(vertices, tool, this->Rule, this->Progress), {}, {} };
+  SmoothCarving carving = FindSmoothCarving(vertices, tool, this->FarDistance, this->Progress);
+  return { std::move(carving.Tetrahedra), std::move(carving.Distances), {} };
 }
 
 VolumeEdit EditFinder::Carve(const CarvingTool& tool) const
 {
-  return this->CarveInIndices(GetInIndices(tool, this->Volume));
+  return this->CarveInIndices(GetInIndices(tool, this->Volume), this->GetVertices());
 }
 
 VolumeEdit EditFinder::CarveSurface(const WorldSheet& surface) const
@@ -89,7 +116,7 @@ VolumeEdit EditFinder::CarveSurface(const WorldSheet& surface) const
   {
     tool.Distance = GetInIndices(MakeSurfaceDistance(surface), this->Volume);
   }
-  return this->CarveInIndices(tool);
+  return this->CarveInIndices(tool, this->GetVertices());
 }
 
 VolumeEdit EditFinder::CarveSweptSphere(const std::vector<glm::dvec3>& centers, double radius) const
@@ -99,33 +126,11 @@ VolumeEdit EditFinder::CarveSweptSphere(const std::vector<glm::dvec3>& centers, 
 
 VolumeEdit EditFinder::CarveLabel(const LabelReader& labels, double label) const
 {
-  const Extent& all = this->Volume.PointExtent;
-  const auto find = [&](const Extent& vertices, double* found)
-  {
-    const std::int64_t width = GetSize(vertices, 0);
-    for (int z = vertices[4]; z <= vertices[5]; ++z)
-    {
-      for (int y = vertices[2]; y <= vertices[3]; ++y)
-      {
-        const std::int64_t voxel =
-          ((z - all[4]) * GetSize(all, 1) + y - all[2]) * GetSize(all, 0) + vertices[0] - all[0];
-        labels(voxel, width, found);
-        std::transform(found, found + width, found,
-          [label](double value) { return value == label ? -1.0 : 1.0; });
-        found += width;
-      }
-    }
-  };
-  const CellBricks bricks(all);
-  if (!this->IsSmooth)
-  {
-    return { FindCarvedTetrahedra(bricks, find, this->Rule, this->Progress), {}, {} };
-  }
   // All voxels have the same distance: the boundary lies halfway between voxels.
-  const glm::dvec3& spacing = this->Volume.Spacing;
-  const double half =
-    0.5 * std::min({ std::abs(spacing.x), std::abs(spacing.y), std::abs(spacing.z) });
-  return MakeEdit(FindSmoothCarving(bricks, find, half, this->FarDistance, this->Progress));
+  const Extent& voxels = this->Volume.PointExtent;
+  return this->CarveInIndices(
+    MakeLabelTool(voxels, labels, label, 0.5 * GetSmallestSpacing(this->Volume)),
+    RestPositions(voxels));
 }
 
 } // namespace deformvolume

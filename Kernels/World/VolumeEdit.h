@@ -75,7 +75,7 @@ public:
 
 private:
   /// Carves with a tool in indices of the volume.
-  VolumeEdit CarveInIndices(const CarvingTool& tool) const;
+  VolumeEdit CarveInIndices(const CarvingTool& tool, const VertexPositions& vertices) const;
 };
 
 } // namespace deformvolume

@@ -27,7 +27,7 @@ void CopyVectors(const VectorView& from, std::vector<glm::dvec3>& to, NodeFaults
       for (std::size_t i = begin; i < end; ++i)
       {
         to[i] = from.Get(i);
-        if (!IsFiniteVector(to[i]))
+        if (!IsFinite(to[i]))
         {
           to[i] = glm::dvec3(0.0);
           faults.Mark(static_cast<std::int64_t>(i), NodeFaults::NotFinite);

@@ -27,7 +27,7 @@ void CheckPoints(const VectorView& points)
 {
   for (std::size_t i = 0; i < points.Count; ++i)
   {
-    if (!IsFiniteVector(points.Get(i)))
+    if (!IsFinite(points.Get(i)))
     {
       throw Error("Point " + std::to_string(i) + " is not finite. Remove NaN and infinity.");
     }

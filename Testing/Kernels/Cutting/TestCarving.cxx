@@ -340,23 +340,21 @@ TEST(Carving, LabelsEqualTheReference)
     const reference::FreePositions positions(vertices);
     std::vector<double> values(positions.Points.size());
     std::generate(values.begin(), values.end(), [&] { return random() % 3 ? -1.0 : 1.0; });
-    const auto find = [&](const Extent& box, double* found)
+    CarvingTool tool;
+    tool.Bounds = GetUnlimitedBounds();
+    tool.IsOfVertices = true;
+    tool.Function = [&](const glm::dvec3* points, std::size_t count, double* found)
     {
-      for (int z = box[4]; z <= box[5]; ++z)
-      {
-        for (int y = box[2]; y <= box[3]; ++y)
+      std::transform(points, points + count, found,
+        [&](const glm::dvec3& point)
         {
-          for (int x = box[0]; x <= box[1]; ++x)
-          {
-            *found++ = values[positions.GetNumber({ { x, y, z } })];
-          }
-        }
-      }
+          const glm::ivec3 voxel(point);
+          return values[positions.GetNumber({ { voxel.x, voxel.y, voxel.z } })];
+        });
     };
     for (const CarvingRule rule : Rules)
     {
-      const reference::Mask carved = reference::GetMask(
-        positions.GetBricks(), FindCarvedTetrahedra(positions.GetBricks(), find, rule));
+      const reference::Mask carved = Carve(RestPositions(vertices), tool, rule);
       std::size_t cell = 0;
       for (int z = vertices[4]; z < vertices[5]; ++z)
       {
