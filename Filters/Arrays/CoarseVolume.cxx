@@ -42,17 +42,14 @@ template <typename Body>
 void ForRows(const Extent& coarse, const Extent& fine, int factor, Body&& body)
 {
   const std::int64_t rows = GetSize(coarse, 1) * GetSize(coarse, 2);
-  ParallelForParts(static_cast<std::size_t>(rows), RowStep,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(static_cast<std::size_t>(rows), RowStep,
+    [&](std::size_t row)
     {
-      for (std::size_t row = begin; row < end; ++row)
-      {
-        const auto number = static_cast<std::int64_t>(row);
-        const std::int64_t y = factor * (coarse[2] + number % GetSize(coarse, 1)) - fine[2];
-        const std::int64_t z = factor * (coarse[4] + number / GetSize(coarse, 1)) - fine[4];
-        const std::int64_t x = std::int64_t{ factor } * coarse[0] - fine[0];
-        body(number * GetSize(coarse, 0), (z * GetSize(fine, 1) + y) * GetSize(fine, 0) + x);
-      }
+      const auto number = static_cast<std::int64_t>(row);
+      const std::int64_t y = factor * (coarse[2] + number % GetSize(coarse, 1)) - fine[2];
+      const std::int64_t z = factor * (coarse[4] + number / GetSize(coarse, 1)) - fine[4];
+      const std::int64_t x = std::int64_t{ factor } * coarse[0] - fine[0];
+      body(number * GetSize(coarse, 0), (z * GetSize(fine, 1) + y) * GetSize(fine, 0) + x);
     });
 }
 

@@ -187,18 +187,15 @@ std::vector<unsigned char> Deformation::FindUndefinedVoxels(
     }
     return false;
   };
-  ParallelFor(part[4], part[5] + 1, 1,
-    [&](std::int64_t begin, std::int64_t end)
+  ParallelForItems(part[5] - part[4] + 1, 1,
+    [&](int layer)
     {
-      for (auto z = static_cast<int>(begin); z < static_cast<int>(end); ++z)
+      std::size_t voxel = static_cast<std::size_t>(layer) * width * height;
+      for (int y = part[2]; y <= part[3]; ++y)
       {
-        std::size_t voxel = static_cast<std::size_t>(z - part[4]) * width * height;
-        for (int y = part[2]; y <= part[3]; ++y)
+        for (int x = part[0]; x <= part[1]; ++x)
         {
-          for (int x = part[0]; x <= part[1]; ++x)
-          {
-            undefined[voxel++] = isUndefined(x, y, z) ? 1 : 0;
-          }
+          undefined[voxel++] = isUndefined(x, y, part[4] + layer) ? 1 : 0;
         }
       }
     });

@@ -258,14 +258,9 @@ void ExtraArrays::FinishRestPositions(double background, vtkImageData* output) c
     {
       const auto* values = static_cast<const float*>(
         output->GetPointData()->GetArray(POSITION_AXES[axis])->GetVoidPointer(0));
-      ParallelForParts(static_cast<std::size_t>(voxels), 1 << 16,
-        [&](std::size_t begin, std::size_t end)
-        {
-          for (std::size_t i = begin; i < end; ++i)
-          {
-            joined[3 * i + axis] = convert(values[i], i, static_cast<int>(axis));
-          }
-        });
+      ParallelForItems(static_cast<std::size_t>(voxels), 1 << 16,
+        [&](std::size_t i)
+        { joined[3 * i + axis] = convert(values[i], i, static_cast<int>(axis)); });
     }
   };
   vtkSmartPointer<vtkDataArray> positions;

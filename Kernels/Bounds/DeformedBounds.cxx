@@ -28,18 +28,15 @@ IndexBounds ComputeInParallel(std::int64_t count, Body&& body)
 {
   const std::int64_t blocks = std::min<std::int64_t>(count, 64);
   std::vector<IndexBounds> bounds(blocks);
-  ParallelFor(0, blocks, 1,
-    [&](std::int64_t begin, std::int64_t end)
+  ParallelForItems(blocks, 1,
+    [&](std::int64_t block)
     {
-      for (std::int64_t block = begin; block < end; ++block)
+      IndexBounds found;
+      for (std::int64_t i = count * block / blocks; i < count * (block + 1) / blocks; ++i)
       {
-        IndexBounds found;
-        for (std::int64_t i = count * block / blocks; i < count * (block + 1) / blocks; ++i)
-        {
-          body(i, found);
-        }
-        bounds[block] = found;
+        body(i, found);
       }
+      bounds[block] = found;
     });
   IndexBounds all;
   for (const IndexBounds& found : bounds)

@@ -52,22 +52,19 @@ void MeshBounds::SetMesh(const VoxelGrid& voxelGrid, const std::vector<glm::dvec
   // Bytes, not bits, so that several threads can set neighboring elements.
   std::vector<unsigned char> clipped(tetrahedra.size(), 0);
   std::vector<std::atomic<std::uint32_t>> uses(restPoints.size());
-  ParallelFor(0, static_cast<std::int64_t>(tetrahedra.size()), 0,
-    [&](std::int64_t begin, std::int64_t end)
+  ParallelForItems(tetrahedra.size(), 4096,
+    [&](std::size_t id)
     {
-      for (std::int64_t id = begin; id < end; ++id)
+      const Tetrahedron& nodes = tetrahedra[id];
+      if (!IsInside(nodes, restPoints, box))
       {
-        const Tetrahedron& nodes = tetrahedra[id];
-        if (!IsInside(nodes, restPoints, box))
+        clipped[id] = 1;
+      }
+      else if (!IsFlat(nodes, restPoints))
+      {
+        for (const std::int32_t node : nodes)
         {
-          clipped[id] = 1;
-        }
-        else if (!IsFlat(nodes, restPoints))
-        {
-          for (const std::int32_t node : nodes)
-          {
-            uses[node].fetch_add(1, std::memory_order_relaxed);
-          }
+          uses[node].fetch_add(1, std::memory_order_relaxed);
         }
       }
     });
@@ -216,10 +213,8 @@ IndexBounds MeshBounds::Compute(const std::vector<glm::dvec3>& restPoints,
     }
     this->NodeBounds[block] = bounds;
   };
-  ParallelForParts(
-    this->NodeBounds.size(), 1, [&](std::size_t block, std::size_t) { addNodes(block); });
-  ParallelForParts(
-    this->ClippedBounds.size(), 1, [&](std::size_t block, std::size_t) { clip(block); });
+  ParallelForItems(this->NodeBounds.size(), 1, addNodes);
+  ParallelForItems(this->ClippedBounds.size(), 1, clip);
   this->IsComputed = true;
   this->StaleNodes.assign(this->StaleNodes.size(), 0);
   this->StaleClipped.assign(this->StaleClipped.size(), 0);

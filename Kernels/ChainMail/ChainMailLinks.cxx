@@ -129,18 +129,15 @@ void ChainMailLinks::Write(
   const ChainMailBlocks& blocks, const std::vector<std::uint32_t>& list, unsigned char* bytes) const
 {
   constexpr std::size_t step = 64;
-  ParallelForParts(list.size(), step,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(list.size(), step,
+    [&](std::size_t i)
     {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        ForEachPoint(blocks.GetVoxels(list[i]),
-          [&](int x, int y, int z)
-          {
-            unsigned char& byte = bytes[blocks.GetVoxelIndex(x, y, z)];
-            byte = static_cast<unsigned char>((byte & ~AllBits) | this->Find(blocks, x, y, z));
-          });
-      }
+      ForEachPoint(blocks.GetVoxels(list[i]),
+        [&](int x, int y, int z)
+        {
+          unsigned char& byte = bytes[blocks.GetVoxelIndex(x, y, z)];
+          byte = static_cast<unsigned char>((byte & ~AllBits) | this->Find(blocks, x, y, z));
+        });
     });
 }
 

@@ -27,12 +27,11 @@ template <typename Function>
 void ForVoxels(const ChainMailBlocks& blocks, const Function& function)
 {
   const std::array<int, 3> size = blocks.GetSize();
-  ParallelFor(0, size[2], 0,
-    [&](std::int64_t first, std::int64_t last)
+  ParallelForItems(size[2], 1,
+    [&](int z)
     {
-      ForEachPoint(
-        { { 0, size[0] - 1, 0, size[1] - 1, static_cast<int>(first), static_cast<int>(last) - 1 } },
-        [&](int x, int y, int z)
+      ForEachPoint({ { 0, size[0] - 1, 0, size[1] - 1, z, z } },
+        [&](int x, int y, int)
         {
           const std::int64_t row = std::int64_t{ z } * size[1] + y;
           function(static_cast<std::size_t>(row * size[0] + x), blocks.GetVoxelIndex(x, y, z));

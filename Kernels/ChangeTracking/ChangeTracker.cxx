@@ -111,16 +111,14 @@ Extent ChangeTracker::GetMovedVertices() const
 bool ChangeTracker::IsChangeInterior(const unsigned char* state, const Extent& box) const
 {
   std::atomic<bool> inside{ true };
-  ParallelForParts(this->SubBricks.GetNumberOfBricks(), StepSize,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(this->SubBricks.GetNumberOfBricks(), StepSize,
+    [&](std::size_t subBrick)
     {
-      for (std::size_t subBrick = begin; subBrick < end && inside; ++subBrick)
+      if (inside &&
+        (this->Masked[subBrick] ||
+          (this->Moved[subBrick] && !this->AreVerticesInterior(subBrick, state, box))))
       {
-        if (this->Masked[subBrick] ||
-          (this->Moved[subBrick] && !this->AreVerticesInterior(subBrick, state, box)))
-        {
-          inside = false;
-        }
+        inside = false;
       }
     });
   return inside;

@@ -130,17 +130,14 @@ ChangeTracker::Box ChangeTracker::GetDirtyBox() const
 template <typename IsWanted>
 void ChangeTracker::FindBoxesOf(const IsWanted& isWanted, const Displacements& displacements)
 {
-  ParallelForParts(this->SubBricks.GetNumberOfBricks(), StepSize,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(this->SubBricks.GetNumberOfBricks(), StepSize,
+    [&](std::size_t subBrick)
     {
-      for (std::size_t subBrick = begin; subBrick < end; ++subBrick)
+      if (!this->Known[subBrick] && isWanted(subBrick))
       {
-        if (!this->Known[subBrick] && isWanted(subBrick))
-        {
-          this->Boxes[subBrick] =
-            this->MakeBox(subBrick, this->ComputeBounds(subBrick, displacements));
-          this->Known[subBrick] = 1;
-        }
+        this->Boxes[subBrick] =
+          this->MakeBox(subBrick, this->ComputeBounds(subBrick, displacements));
+        this->Known[subBrick] = 1;
       }
     });
 }

@@ -79,25 +79,16 @@ void ChangeTracker::MovePoints(const PointSet& changed, const float* last)
   };
   // Test bricks first: most of them have no changed points.
   std::vector<unsigned char> near(this->Bricks.GetNumberOfBricks());
-  ParallelForParts(near.size(), StepSize,
-    [&](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t brick = begin; brick < end; ++brick)
-      {
-        near[brick] = hasMoved(this->PointsOfBricks, brick) ? 1 : 0;
-      }
-    });
+  ParallelForItems(near.size(), StepSize,
+    [&](std::size_t brick) { near[brick] = hasMoved(this->PointsOfBricks, brick) ? 1 : 0; });
   const auto isMoved = [&](std::size_t subBrick)
   { return near[this->Sections[subBrick].first] && hasMoved(this->Points, subBrick); };
-  ParallelForParts(this->SubBricks.GetNumberOfBricks(), StepSize,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(this->SubBricks.GetNumberOfBricks(), StepSize,
+    [&](std::size_t subBrick)
     {
-      for (std::size_t subBrick = begin; subBrick < end; ++subBrick)
+      if (isMoved(subBrick))
       {
-        if (isMoved(subBrick))
-        {
-          this->Move(subBrick, last);
-        }
+        this->Move(subBrick, last);
       }
     });
   this->PlanBoxesKnown = false;

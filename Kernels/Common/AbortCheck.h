@@ -85,16 +85,7 @@ void ForParts(AbortCheck& abortCheck, std::size_t parts, std::size_t atOnce, Bod
   for (std::size_t begin = 0; begin < parts; begin += atOnce)
   {
     abortCheck.Check();
-    const std::size_t end = std::min(parts, begin + atOnce);
-    ParallelFor(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), 1,
-      [&](std::int64_t first, std::int64_t last)
-      {
-        for (auto part = static_cast<std::size_t>(first); part < static_cast<std::size_t>(last);
-             ++part)
-        {
-          body(part);
-        }
-      });
+    ParallelForItems(std::min(atOnce, parts - begin), 1, [&](std::size_t i) { body(begin + i); });
   }
 }
 

@@ -52,6 +52,20 @@ void ParallelForParts(std::size_t size, std::size_t step, Body&& body)
     });
 }
 
+/// Calls body(item) in parallel for the items 0 to count - 1, `step` items at a time.
+template <typename Integer, typename Body>
+void ParallelForItems(Integer count, std::size_t step, Body&& body)
+{
+  ParallelForParts(static_cast<std::size_t>(count), step,
+    [&](std::size_t begin, std::size_t end)
+    {
+      for (; begin < end; ++begin)
+      {
+        body(static_cast<Integer>(begin));
+      }
+    });
+}
+
 /// Sets `least` to the minimum of `least` and `value`. Thread-safe.
 template <typename T>
 void Lower(std::atomic<T>& least, T value)

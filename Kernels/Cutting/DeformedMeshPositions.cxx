@@ -146,20 +146,17 @@ void DeformedMeshPositions::SetDisplacements(const float* displacements)
   this->Displacements = displacements;
   this->Limits.resize(this->Tetrahedra.size());
   constexpr std::size_t step = 8192;
-  ParallelForParts(this->Tetrahedra.size(), step,
-    [this](std::size_t begin, std::size_t end)
+  ParallelForItems(this->Tetrahedra.size(), step,
+    [this](std::size_t tetrahedron)
     {
-      for (std::size_t tetrahedron = begin; tetrahedron < end; ++tetrahedron)
+      NodeLimits& box = this->Limits[tetrahedron];
+      for (std::size_t k = 0; k < 4; ++k)
       {
-        NodeLimits& box = this->Limits[tetrahedron];
-        for (std::size_t k = 0; k < 4; ++k)
+        const float* node = this->Displacements + 3 * this->Tetrahedra[tetrahedron][k];
+        for (std::size_t axis = 0; axis < 3; ++axis)
         {
-          const float* node = this->Displacements + 3 * this->Tetrahedra[tetrahedron][k];
-          for (std::size_t axis = 0; axis < 3; ++axis)
-          {
-            box.Min[axis] = k == 0 ? node[axis] : std::min(box.Min[axis], node[axis]);
-            box.Max[axis] = k == 0 ? node[axis] : std::max(box.Max[axis], node[axis]);
-          }
+          box.Min[axis] = k == 0 ? node[axis] : std::min(box.Min[axis], node[axis]);
+          box.Max[axis] = k == 0 ? node[axis] : std::max(box.Max[axis], node[axis]);
         }
       }
     });

@@ -45,15 +45,12 @@ void DeformedPositions::FindBoxes(const std::vector<unsigned char>& marked)
   const std::size_t bricks = this->GetBricks().GetNumberOfBricks();
   this->Boxes.resize(bricks);
   constexpr std::size_t step = 32;
-  ParallelForParts(bricks, step,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(bricks, step,
+    [&](std::size_t brick)
     {
-      for (std::size_t brick = begin; brick < end; ++brick)
+      if (marked.empty() || marked[brick] != 0)
       {
-        if (marked.empty() || marked[brick] != 0)
-        {
-          this->Boxes[brick] = this->FindBox(brick);
-        }
+        this->Boxes[brick] = this->FindBox(brick);
       }
     });
   this->Box = SnappedBox();

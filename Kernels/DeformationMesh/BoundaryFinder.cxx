@@ -184,14 +184,8 @@ BoundaryFinder::BoundaryFinder(const Extent& part, const Extent& whole)
 
 bool BoundaryFinder::Cross(const std::vector<Triangle>& faces, double tolerance)
 {
-  ParallelForParts(faces.size(), 256,
-    [&](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        AddCells(faces[i], this->Whole, tolerance, this->Crossed);
-      }
-    });
+  ParallelForItems(faces.size(), 256,
+    [&](std::size_t i) { AddCells(faces[i], this->Whole, tolerance, this->Crossed); });
   const Extent& c = this->Cells;
   this->Crossed.ForEach(
     [&](std::int64_t x, std::int64_t y, std::int64_t z)

@@ -160,47 +160,44 @@ void RestRegions::AddTetrahedron(const Tetrahedron& tetrahedron,
 RestRegions::RestRegions(const VoxelGrid& voxelGrid, const DisplacementField& field)
   : RestRegions(voxelGrid)
 {
-  ParallelFor(0, this->GetNumberOfRegions(), 16,
-    [&](std::int64_t first, std::int64_t last)
+  ParallelForItems(this->GetNumberOfRegions(), 16,
+    [&](std::int64_t region)
     {
-      for (std::int64_t region = first; region < last; ++region)
+      const Extent voxels = this->GetVoxels(region);
+      Extent points;
+      bool hasOutside = false;
+      for (int axis = 0; axis < 3; ++axis)
       {
-        const Extent voxels = this->GetVoxels(region);
-        Extent points;
-        bool hasOutside = false;
-        for (int axis = 0; axis < 3; ++axis)
+        const double* row = &field.IndexToField[4 * axis];
+        double from = row[3];
+        double to = row[3];
+        for (int k = 0; k < 3; ++k)
         {
-          const double* row = &field.IndexToField[4 * axis];
-          double from = row[3];
-          double to = row[3];
-          for (int k = 0; k < 3; ++k)
-          {
-            from += std::min(row[k] * voxels[2 * k], row[k] * voxels[2 * k + 1]);
-            to += std::max(row[k] * voxels[2 * k], row[k] * voxels[2 * k + 1]);
-          }
-          // The device computes positions in single precision, with an error far below this margin.
-          constexpr double margin = 0.25;
-          const double end = field.Dimensions[axis] - 1;
-          hasOutside = hasOutside || from < 0.0 || to > end;
-          points[2 * axis] = static_cast<int>(glm::clamp(std::floor(from - margin), 0.0, end));
-          points[2 * axis + 1] = static_cast<int>(glm::clamp(std::ceil(to + margin), 0.0, end));
+          from += std::min(row[k] * voxels[2 * k], row[k] * voxels[2 * k + 1]);
+          to += std::max(row[k] * voxels[2 * k], row[k] * voxels[2 * k + 1]);
         }
-        IndexBounds displacement;
-        if (hasOutside && IsFading(field))
-        {
-          displacement.Add(glm::dvec3(0.0));
-        }
-        ForEachPoint(points,
-          [&](int x, int y, int z)
-          {
-            const std::int64_t row = static_cast<std::int64_t>(z) * field.Dimensions[1] + y;
-            displacement.Add(GetVector(field, row * field.Dimensions[0] + x));
-          });
-        IndexBounds& bounds = this->Bounds[region];
-        const IndexBounds rest = this->Transform.ToOutput(GetBox(voxels));
-        bounds.Add(rest.Min + displacement.Min);
-        bounds.Add(rest.Max + displacement.Max);
+        // The device computes positions in single precision, with an error far below this margin.
+        constexpr double margin = 0.25;
+        const double end = field.Dimensions[axis] - 1;
+        hasOutside = hasOutside || from < 0.0 || to > end;
+        points[2 * axis] = static_cast<int>(glm::clamp(std::floor(from - margin), 0.0, end));
+        points[2 * axis + 1] = static_cast<int>(glm::clamp(std::ceil(to + margin), 0.0, end));
       }
+      IndexBounds displacement;
+      if (hasOutside && IsFading(field))
+      {
+        displacement.Add(glm::dvec3(0.0));
+      }
+      ForEachPoint(points,
+        [&](int x, int y, int z)
+        {
+          const std::int64_t row = static_cast<std::int64_t>(z) * field.Dimensions[1] + y;
+          displacement.Add(GetVector(field, row * field.Dimensions[0] + x));
+        });
+      IndexBounds& bounds = this->Bounds[region];
+      const IndexBounds rest = this->Transform.ToOutput(GetBox(voxels));
+      bounds.Add(rest.Min + displacement.Min);
+      bounds.Add(rest.Max + displacement.Max);
     });
 }
 

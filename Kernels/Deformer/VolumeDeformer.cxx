@@ -206,8 +206,8 @@ void VolumeDeformer::SetMesh(const Tetrahedron* tetrahedra, std::size_t numberOf
   this->Impl->Send(
     [&](Internals::Parts& parts)
     {
-      CheckLinks(links, GetNumberOfPoints(parts.Volume.GetVoxelGrid().VertexExtent),
-        numberOfTetrahedra);
+      CheckLinks(
+        links, GetNumberOfPoints(parts.Volume.GetVoxelGrid().VertexExtent), numberOfTetrahedra);
       parts.SetMesh(tetrahedra, numberOfTetrahedra, numberOfNodes, links, boundary);
     });
 }

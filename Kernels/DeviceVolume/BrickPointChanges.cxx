@@ -92,8 +92,8 @@ void BrickPoints::AddPoints(
 {
   this->Added.resize(this->Begins.size());
   std::atomic<std::size_t> number{ 0 };
-  ParallelForParts(bricks.size(), 1,
-    [&](std::size_t i, std::size_t) { number += this->AddPoints(bricks[i], changes); });
+  ParallelForItems(
+    bricks.size(), 1, [&](std::size_t i) { number += this->AddPoints(bricks[i], changes); });
   this->NumberOfAdded += number;
 }
 

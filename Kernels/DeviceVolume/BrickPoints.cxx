@@ -125,7 +125,7 @@ void BrickPoints::Collect(const BrickGrid& grid, const Mesh& mesh, Visit&& visit
       std::sort(brickNodes.Nodes.begin(), brickNodes.Nodes.end());
     }
   };
-  ParallelForParts(parts, 1, [&](std::size_t part, std::size_t) { collect(part); });
+  ParallelForItems(parts, 1, collect);
   for (const BrickNodes& nodes : found)
   {
     this->Append(nodes);

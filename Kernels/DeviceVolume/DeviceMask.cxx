@@ -146,14 +146,8 @@ std::vector<Extent> DeviceMask::Set(const OpenCLContext& context, const cl::Comm
   const auto copy = [&](unsigned char* last)
   {
     constexpr std::size_t step = 64;
-    ParallelForParts(changes.size(), step,
-      [&](std::size_t begin, std::size_t end)
-      {
-        for (std::size_t i = begin; i < end; ++i)
-        {
-          CopyMask(this->Size, changes[i], wanted, last);
-        }
-      });
+    ParallelForItems(
+      changes.size(), step, [&](std::size_t i) { CopyMask(this->Size, changes[i], wanted, last); });
   };
   PointRanges bytes;
   if (written)

@@ -26,14 +26,8 @@ std::vector<Tetrahedron> GetNodeOffsets(
   const Tetrahedron* tetrahedra, std::size_t numberOfTetrahedra)
 {
   std::vector<Tetrahedron> offsets(numberOfTetrahedra);
-  ParallelForParts(numberOfTetrahedra, 1 << 16,
-    [&](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t t = begin; t < end; ++t)
-      {
-        offsets[t] = GetNodeOffsets(tetrahedra[t]);
-      }
-    });
+  ParallelForItems(numberOfTetrahedra, 1 << 16,
+    [&](std::size_t t) { offsets[t] = GetNodeOffsets(tetrahedra[t]); });
   return offsets;
 }
 

@@ -32,14 +32,11 @@ constexpr std::size_t WordStep = 65536 / WordSize; // words that a thread proces
 template <typename Body>
 void ForWords(const std::vector<std::size_t>& words, std::size_t count, Body&& body)
 {
-  ParallelForParts(words.size(), WordStep,
-    [&](std::size_t first, std::size_t past)
+  ParallelForItems(words.size(), WordStep,
+    [&](std::size_t i)
     {
-      for (std::size_t i = first; i < past; ++i)
-      {
-        const std::size_t begin = words[i] * WordSize;
-        body(words[i], begin, std::min(begin + WordSize, count));
-      }
+      const std::size_t begin = words[i] * WordSize;
+      body(words[i], begin, std::min(begin + WordSize, count));
     });
 }
 

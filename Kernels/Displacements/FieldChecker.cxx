@@ -240,17 +240,14 @@ FieldCheckResult FieldChecker::Check(
   this->Bounds.resize(changed.size());
   this->AreUsable.resize(changed.size());
   const BlockScanner scanner(voxelGrid, field);
-  ParallelForParts(changed.size(), 16,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(changed.size(), 16,
+    [&](std::size_t block)
     {
-      for (std::size_t block = begin; block < end; ++block)
+      if (changed[block])
       {
-        if (changed[block])
-        {
-          bool usable = true;
-          this->Bounds[block] = scanner.Scan(block, usable);
-          this->AreUsable[block] = usable ? 1 : 0;
-        }
+        bool usable = true;
+        this->Bounds[block] = scanner.Scan(block, usable);
+        this->AreUsable[block] = usable ? 1 : 0;
       }
     });
   FieldCheckResult state;

@@ -88,15 +88,13 @@ FieldParameters MakeFieldParameters(const DisplacementField& field, const VoxelG
 void MapVectors(
   const DisplacementField& field, const std::array<std::size_t, 2>& range, float* displacements)
 {
-  ParallelForParts(range[1] - range[0], 1 << 16,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(range[1] - range[0], 1 << 16,
+    [&](std::size_t i)
     {
-      for (std::size_t point = range[0] + begin; point < range[0] + end; ++point)
-      {
-        const std::array<float, 3> displacement =
-          GetDisplacement(field, static_cast<std::int64_t>(point));
-        std::copy(displacement.begin(), displacement.end(), displacements + 3 * point);
-      }
+      const std::size_t point = range[0] + i;
+      const std::array<float, 3> displacement =
+        GetDisplacement(field, static_cast<std::int64_t>(point));
+      std::copy(displacement.begin(), displacement.end(), displacements + 3 * point);
     });
 }
 

@@ -398,20 +398,17 @@ std::vector<ElementResults> FiniteElements::GetResults(
       *std::max_element(this->Batches.Tetrahedra.begin(), this->Batches.Tetrahedra.end())) +
     1);
   constexpr std::size_t batchesOfPart = 256;
-  ParallelForParts(this->Batches.Batches.size(), batchesOfPart,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(this->Batches.Batches.size(), batchesOfPart,
+    [&](std::size_t i)
     {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        const ElementBatch& batch = this->Batches.Batches[i];
-        const std::int32_t* const tetrahedra = &this->Batches.Tetrahedra[i * NumberOfLanes];
-        WithModel(this->Model,
-          [&](auto known)
-          {
-            FindBatchResults<decltype(known)::value>(
-              batch, &displacements.front().x, tetrahedra, results);
-          });
-      }
+      const ElementBatch& batch = this->Batches.Batches[i];
+      const std::int32_t* const tetrahedra = &this->Batches.Tetrahedra[i * NumberOfLanes];
+      WithModel(this->Model,
+        [&](auto known)
+        {
+          FindBatchResults<decltype(known)::value>(
+            batch, &displacements.front().x, tetrahedra, results);
+        });
     });
   return results;
 }

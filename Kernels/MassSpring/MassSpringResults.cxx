@@ -59,19 +59,16 @@ std::vector<ElementResults> ComputeMassSpringResults(
   const ElasticBody& body, const std::vector<float>& displacements, double cubeEdge)
 {
   std::vector<ElementResults> results(body.Tetrahedra.size());
-  ParallelForParts(results.size(), TetrahedraAtOnce,
-    [&](std::size_t first, std::size_t last)
+  ParallelForItems(results.size(), TetrahedraAtOnce,
+    [&](std::size_t t)
     {
-      for (std::size_t t = first; t < last; ++t)
+      const std::array<glm::dvec3, 4> rest = body.GetCorners(t);
+      std::array<glm::dvec3, 4> now;
+      for (std::size_t i = 0; i < 4; ++i)
       {
-        const std::array<glm::dvec3, 4> rest = body.GetCorners(t);
-        std::array<glm::dvec3, 4> now;
-        for (std::size_t i = 0; i < 4; ++i)
-        {
-          now[i] = rest[i] + GetVector(displacements.data(), body.Tetrahedra[t][i]);
-        }
-        results[t] = FindResults(rest, now, body.GetMaterial(t), cubeEdge);
+        now[i] = rest[i] + GetVector(displacements.data(), body.Tetrahedra[t][i]);
       }
+      results[t] = FindResults(rest, now, body.GetMaterial(t), cubeEdge);
     });
   return results;
 }

@@ -113,14 +113,7 @@ void ForPatches(const Extent& output, const std::vector<std::uint32_t>& patches,
 {
   constexpr std::size_t step = 16;
   const std::vector<PatchRow> rows = FindRows(output, patches);
-  ParallelForParts(rows.size(), step,
-    [&](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        body(rows[i]);
-      }
-    });
+  ParallelForItems(rows.size(), step, [&](std::size_t i) { body(rows[i]); });
 }
 
 } // namespace

@@ -121,19 +121,16 @@ std::vector<unsigned char> FindSplitFaces(const SplitRegion& region, const FaceN
       }
     }
   }
-  ParallelForParts(states.size(), FacesOfPart,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(states.size(), FacesOfPart,
+    [&](std::size_t face)
     {
-      for (std::size_t face = begin; face < end; ++face)
+      // Handle each pair of faces once, so that no two threads write to the same state.
+      const std::size_t next = neighbors.GetNext(face);
+      if (next > face && neighbors.IsShared(face) && states[face] == Whole &&
+        (region.IsNear(face / 4) || region.IsNear(next / 4)) &&
+        crossings.IsCrossedOddly(region.GetCentroid(face / 4), region.GetCentroid(next / 4)))
       {
-        // Handle each pair of faces once, so that no two threads write to the same state.
-        const std::size_t next = neighbors.GetNext(face);
-        if (next > face && neighbors.IsShared(face) && states[face] == Whole &&
-          (region.IsNear(face / 4) || region.IsNear(next / 4)) &&
-          crossings.IsCrossedOddly(region.GetCentroid(face / 4), region.GetCentroid(next / 4)))
-        {
-          states[face] = states[next] = SplitNow;
-        }
+        states[face] = states[next] = SplitNow;
       }
     });
   return states;

@@ -99,18 +99,15 @@ SplitRegion::SplitRegion(const std::vector<glm::dvec3>& positions,
     }
   }
   this->Centroids.resize(this->Numbers.size());
-  ParallelForParts(this->Numbers.size(), TetrahedraAtOnce,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(this->Numbers.size(), TetrahedraAtOnce,
+    [&](std::size_t t)
     {
-      for (std::size_t t = begin; t < end; ++t)
+      glm::dvec3 sum(0.0);
+      for (const std::int32_t node : tetrahedra[this->Numbers[t]])
       {
-        glm::dvec3 sum(0.0);
-        for (const std::int32_t node : tetrahedra[this->Numbers[t]])
-        {
-          sum += steps.Get(positions[static_cast<std::size_t>(node)]);
-        }
-        this->Centroids[t] = RoundPoint(0.25 * sum);
+        sum += steps.Get(positions[static_cast<std::size_t>(node)]);
       }
+      this->Centroids[t] = RoundPoint(0.25 * sum);
     });
 }
 

@@ -191,29 +191,26 @@ IndexBounds ComputeLookupBounds(const VoxelGrid& voxelGrid, const DisplacementFi
   const glm::ivec3 blocks = lookup.GetNumberOfBlocks();
   IndexBounds bounds;
   std::mutex mutex;
-  ParallelFor(0, static_cast<std::int64_t>(blocks.y) * blocks.z, 1,
-    [&](std::int64_t begin, std::int64_t end)
+  ParallelForItems(static_cast<std::int64_t>(blocks.y) * blocks.z, 1,
+    [&](std::int64_t row)
     {
-      for (std::int64_t row = begin; row < end; ++row)
+      IndexBounds known;
       {
-        IndexBounds known;
-        {
-          const std::lock_guard<std::mutex> lock(mutex);
-          known = bounds;
-        }
-        for (int x = 0; x < blocks.x; ++x)
-        {
-          const IndexBounds candidates = lookup.GetCandidates(
-            { x, static_cast<int>(row % blocks.y), static_cast<int>(row / blocks.y) }, known);
-          if (glm::all(glm::lessThanEqual(candidates.Min, candidates.Max)) &&
-            !known.Contains(candidates))
-          {
-            AddCovered(lookup, candidates, known);
-          }
-        }
         const std::lock_guard<std::mutex> lock(mutex);
-        bounds.Add(known);
+        known = bounds;
       }
+      for (int x = 0; x < blocks.x; ++x)
+      {
+        const IndexBounds candidates = lookup.GetCandidates(
+          { x, static_cast<int>(row % blocks.y), static_cast<int>(row / blocks.y) }, known);
+        if (glm::all(glm::lessThanEqual(candidates.Min, candidates.Max)) &&
+          !known.Contains(candidates))
+        {
+          AddCovered(lookup, candidates, known);
+        }
+      }
+      const std::lock_guard<std::mutex> lock(mutex);
+      bounds.Add(known);
     });
   return bounds;
 }

@@ -30,11 +30,6 @@ glm::dvec3 GetPoint(const std::vector<glm::dvec3>& points, std::int32_t node)
   return points[static_cast<std::size_t>(node)];
 }
 
-std::int64_t GetPlane(const Extent& voxels)
-{
-  return GetSize(voxels, 0) * GetSize(voxels, 1);
-}
-
 } // namespace
 
 void FadedLinks::Link(const Extent& voxels, const glm::dvec3& spacing,
@@ -118,14 +113,9 @@ void FadedLinks::LinkRows(const Extent& voxels, const glm::dvec3& spacing,
   constexpr int parts = 16;
   for (int part = 0; part < parts; ++part)
   {
-    ParallelFor(rows * part / parts, rows * (part + 1) / parts, 16,
-      [&](std::int64_t begin, std::int64_t end)
-      {
-        for (std::int64_t row = begin; row < end; ++row)
-        {
-          linkRow(row);
-        }
-      });
+    const std::int64_t first = rows * part / parts;
+    ParallelForItems(
+      rows * (part + 1) / parts - first, 16, [&](std::int64_t row) { linkRow(first + row); });
     progress((part + 1.0) / parts);
   }
 }
@@ -138,16 +128,13 @@ void FadedLinks::DropUnused(std::size_t numberOfTetrahedra, std::vector<VertexLi
   }
   const auto first = static_cast<std::int32_t>(numberOfTetrahedra) + 1;
   std::vector<std::atomic<unsigned char>> used(this->Faces.size());
-  ParallelForParts(links.size(), 1 << 16,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(links.size(), 1 << 16,
+    [&](std::size_t i)
     {
-      for (std::size_t i = begin; i < end; ++i)
+      if (links[i].Tetrahedron >= first)
       {
-        if (links[i].Tetrahedron >= first)
-        {
-          used[static_cast<std::size_t>(links[i].Tetrahedron - first)].store(
-            1, std::memory_order_relaxed);
-        }
+        used[static_cast<std::size_t>(links[i].Tetrahedron - first)].store(
+          1, std::memory_order_relaxed);
       }
     });
   std::vector<TetrahedronFace> kept;
@@ -160,16 +147,13 @@ void FadedLinks::DropUnused(std::size_t numberOfTetrahedra, std::vector<VertexLi
       kept.push_back(this->Faces[face]);
     }
   }
-  ParallelForParts(links.size(), 1 << 16,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(links.size(), 1 << 16,
+    [&](std::size_t i)
     {
-      for (std::size_t i = begin; i < end; ++i)
+      std::int32_t& number = links[i].Tetrahedron;
+      if (number >= first)
       {
-        std::int32_t& number = links[i].Tetrahedron;
-        if (number >= first)
-        {
-          number = first + numbers[static_cast<std::size_t>(number - first)];
-        }
+        number = first + numbers[static_cast<std::size_t>(number - first)];
       }
     });
   this->Faces = std::move(kept);
@@ -192,7 +176,7 @@ void FadedLinks::FindBlocks(
 {
   const auto still = static_cast<std::int32_t>(numberOfTetrahedra);
   const std::int64_t size = GetSize(voxels, 0);
-  const std::int64_t plane = GetPlane(voxels);
+  const std::int64_t plane = size * GetSize(voxels, 1);
   struct Layer
   {
     std::vector<Block> Blocks;
@@ -249,12 +233,11 @@ void FadedLinks::FindBlocks(
       layer.Blocks.push_back(block);
     }
   };
-  ParallelFor(0, count(2), 1,
-    [&](std::int64_t begin, std::int64_t end)
+  ParallelForItems(count(2), 1,
+    [&](int k)
     {
-      ForEachPoint({ { 0, count(0) - 1, 0, count(1) - 1, static_cast<int>(begin),
-                     static_cast<int>(end) - 1 } },
-        [&](int i, int j, int k) {
+      ForEachPoint({ { 0, count(0) - 1, 0, count(1) - 1, k, k } },
+        [&](int i, int j, int) {
           findBlock({ { i, j, k } }, layers[static_cast<std::size_t>(k)]);
         });
     });

@@ -174,8 +174,8 @@ RunBuilder::Sample RunBuilder::SampleTiles() const
 {
   const std::vector<std::int64_t> tiles = this->ChooseTiles();
   std::vector<Sample> samples(tiles.size());
-  ParallelForParts(tiles.size(), 1,
-    [&](std::size_t i, std::size_t)
+  ParallelForItems(tiles.size(), 1,
+    [&](std::size_t i)
     {
       const TileRuns made =
         this->MakeTileRuns(tiles[i], this->Linker.GetTiles().GetVoxels(tiles[i]));
@@ -258,16 +258,13 @@ VertexRuns RunBuilder::Build(const Extent& part, std::int64_t& numberOfInnerVoxe
   {
     const std::int64_t end = std::min(begin + step, layers);
     std::vector<std::vector<TileRuns>> made(end - begin, std::vector<TileRuns>(across));
-    ParallelFor(begin * across, end * across, 1,
-      [&](std::int64_t first, std::int64_t last)
+    ParallelForItems((end - begin) * across, 1,
+      [&](std::int64_t tile)
       {
-        for (std::int64_t tile = first; tile < last; ++tile)
-        {
-          const std::int64_t layer = tile / across;
-          const std::int64_t inLayer = tile % across;
-          made[layer - begin][inLayer] =
-            this->MakeTileRuns(getTile(layer, inLayer), getBox(layer, inLayer));
-        }
+        const std::int64_t layer = tile / across;
+        const std::int64_t inLayer = tile % across;
+        made[layer][inLayer] =
+          this->MakeTileRuns(getTile(begin + layer, inLayer), getBox(begin + layer, inLayer));
       });
     for (std::int64_t layer = begin; layer < end; ++layer)
     {

@@ -154,16 +154,15 @@ void StaticMappingBuilder::BuildLinks(
   std::atomic<std::int64_t> inner{ 0 };
   for (int step = 0; step < steps; ++step)
   {
-    ParallelFor(tiles * step / steps, tiles * (step + 1) / steps, 1,
-      [&](std::int64_t first, std::int64_t last)
+    const std::int64_t first = tiles * step / steps;
+    ParallelForItems(tiles * (step + 1) / steps - first, 1,
+      [&](std::int64_t i)
       {
-        for (std::int64_t i = first; i < last; ++i)
-        {
-          const std::int64_t tile =
-            (wanted.Begin[1] + i / across) * all.GetNumberOfTiles(0) + wanted.Begin[0] + i % across;
-          inner += this->Linker->LinkTile(
-            tile, Intersect(all.GetVoxels(tile), MakeVoxelBox(part)), target);
-        }
+        const std::int64_t row = wanted.Begin[1] + (first + i) / across;
+        const std::int64_t tile =
+          row * all.GetNumberOfTiles(0) + wanted.Begin[0] + (first + i) % across;
+        inner +=
+          this->Linker->LinkTile(tile, Intersect(all.GetVoxels(tile), MakeVoxelBox(part)), target);
       });
     report(SortedFraction + (linkingDone - SortedFraction) * (step + 1) / steps);
   }

@@ -72,7 +72,7 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
   const std::int64_t size = GetSize(voxels, 0);
   const std::int64_t plane = size * GetSize(voxels, 1);
   const std::int64_t layers = std::max<std::int64_t>(GetSize(voxels, 2) - 1, 0);
-  std::vector<std::vector<std::array<std::int64_t, 4>>> found(static_cast<std::size_t>(layers));
+  using Vertices = std::array<std::int64_t, 4>;
   // Whether two vertices follow points that are too far apart. On a convex boundary, the closest
   // points of two voxels are not farther apart than the voxels.
   const auto isStretchable = [&](const std::array<Anchor, 8>& anchors,
@@ -96,85 +96,70 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
     }
     return false;
   };
-  ParallelFor(0, layers, 1,
-    [&](std::int64_t begin, std::int64_t end)
+  const auto findInCell = [&](int x, int y, int z, std::vector<Vertices>& found)
+  {
+    const std::int64_t first = z * plane + y * size + x;
+    std::array<Anchor, 8> anchors;
+    std::array<glm::dvec3, 8> positions;
+    std::array<std::int64_t, 8> numbers;
+    bool anyOutside = false;
+    bool allStill = true;
+    for (int corner = 0; corner < 8; ++corner)
     {
-      std::array<Anchor, 8> anchors;
-      std::array<glm::dvec3, 8> positions;
-      std::array<std::int64_t, 8> numbers;
-      for (std::int64_t z = begin; z < end; ++z)
+      const std::int64_t number =
+        first + (corner & 1) + (corner >> 2 & 1) * size + (corner >> 1 & 1) * plane;
+      const std::int32_t tetrahedron = links[static_cast<std::size_t>(number)].Tetrahedron;
+      anyOutside = anyOutside || tetrahedron >= still;
+      allStill = allStill && tetrahedron == still;
+      numbers[static_cast<std::size_t>(corner)] = number;
+    }
+    if (!anyOutside || allStill)
+    {
+      return;
+    }
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      const auto at = static_cast<std::size_t>(corner);
+      const glm::dvec3 voxel(voxels[0] + x + (corner & 1), voxels[2] + y + (corner >> 2 & 1),
+        voxels[4] + z + (corner >> 1 & 1));
+      positions[at] = spacing * voxel;
+      anchors[at] = GetAnchor(links[static_cast<std::size_t>(numbers[at])], voxel, spacing,
+        restPoints, tetrahedra, faces);
+    }
+    const int mirror = DEFORMVOLUME_MIRROR(voxels[0] + x, voxels[2] + y, voxels[4] + z);
+    for (const auto& tetrahedron : FiveTetrahedra)
+    {
+      int vertices[4];
+      for (int k = 0; k < 4; ++k)
       {
-        for (std::int64_t y = 0; y + 1 < GetSize(voxels, 1); ++y)
-        {
-          for (std::int64_t x = 0; x + 1 < size; ++x)
-          {
-            const std::int64_t first = z * plane + y * size + x;
-            bool anyOutside = false;
-            bool allStill = true;
-            for (int corner = 0; corner < 8; ++corner)
-            {
-              const std::int64_t number =
-                first + (corner & 1) + (corner >> 2 & 1) * size + (corner >> 1 & 1) * plane;
-              const std::int32_t tetrahedron = links[static_cast<std::size_t>(number)].Tetrahedron;
-              anyOutside = anyOutside || tetrahedron >= still;
-              allStill = allStill && tetrahedron == still;
-              numbers[static_cast<std::size_t>(corner)] = number;
-            }
-            if (!anyOutside || allStill)
-            {
-              continue;
-            }
-            for (int corner = 0; corner < 8; ++corner)
-            {
-              const auto at = static_cast<std::size_t>(corner);
-              const glm::dvec3 voxel(static_cast<double>(voxels[0] + x + (corner & 1)),
-                static_cast<double>(voxels[2] + y + (corner >> 2 & 1)),
-                static_cast<double>(voxels[4] + z + (corner >> 1 & 1)));
-              positions[at] = spacing * voxel;
-              anchors[at] = GetAnchor(links[static_cast<std::size_t>(numbers[at])], voxel, spacing,
-                restPoints, tetrahedra, faces);
-            }
-            const int mirror = DEFORMVOLUME_MIRROR(voxels[0] + x, voxels[2] + y, voxels[4] + z);
-            for (const auto& tetrahedron : FiveTetrahedra)
-            {
-              int vertices[4];
-              for (int k = 0; k < 4; ++k)
-              {
-                vertices[k] = tetrahedron[k] ^ mirror;
-              }
-              if (isStretchable(anchors, positions, vertices))
-              {
-                std::array<std::int64_t, 4>& one =
-                  found[static_cast<std::size_t>(z)].emplace_back();
-                for (std::size_t k = 0; k < 4; ++k)
-                {
-                  one[k] = numbers[static_cast<std::size_t>(vertices[k])];
-                }
-              }
-            }
-          }
-        }
+        vertices[k] = tetrahedron[k] ^ mirror;
       }
-    });
-  std::int64_t count = 0;
-  for (const auto& layer : found)
-  {
-    count += static_cast<std::int64_t>(layer.size());
-  }
-  this->Step = std::max<std::int64_t>(1, (count + MostStretchable - 1) / MostStretchable);
-  std::int64_t next = 0;
-  for (const auto& layer : found)
-  {
-    for (const auto& vertices : layer)
-    {
-      if (next++ % this->Step == 0)
+      if (isStretchable(anchors, positions, vertices))
       {
-        std::array<VertexLink, 4>& one = this->Stretchable.emplace_back();
+        Vertices& one = found.emplace_back();
         for (std::size_t k = 0; k < 4; ++k)
         {
-          one[k] = links[static_cast<std::size_t>(vertices[k])];
+          one[k] = numbers[static_cast<std::size_t>(vertices[k])];
         }
       }
+    }
+  };
+  const std::vector<Vertices> found = CollectItems<Vertices>(static_cast<std::size_t>(layers), 1,
+    [&](std::size_t layer, std::vector<Vertices>& some)
+    {
+      const auto z = static_cast<int>(layer);
+      ForEachPoint(
+        { { 0, static_cast<int>(size) - 2, 0, static_cast<int>(GetSize(voxels, 1)) - 2, z, z } },
+        [&](int x, int y, int) { findInCell(x, y, z, some); });
+    });
+  const auto count = static_cast<std::int64_t>(found.size());
+  this->Step = std::max<std::int64_t>(1, (count + MostStretchable - 1) / MostStretchable);
+  for (std::int64_t i = 0; i < count; i += this->Step)
+  {
+    std::array<VertexLink, 4>& one = this->Stretchable.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k)
+    {
+      one[k] = links[static_cast<std::size_t>(found[static_cast<std::size_t>(i)][k])];
     }
   }
 }

@@ -29,7 +29,7 @@ TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::
   : Voxels(voxels)
 {
   this->ChooseSize();
-  std::vector<Range> ranges(tetrahedra.size());
+  std::vector<Rectangle> ranges(tetrahedra.size());
   std::atomic<std::int64_t> flat{ 0 };
   std::atomic<bool> beyondLimit{ false };
   ParallelForParts(tetrahedra.size(), 4096,
@@ -48,7 +48,8 @@ TetrahedronTiles::TetrahedronTiles(const Extent& voxels, const std::vector<glm::
         }
         BarycentricMap map;
         flatHere += map.SetTetrahedron(nodes, restPoints) ? 0 : 1;
-        ranges[id] = this->FindRange(positions, margin);
+        const VoxelBox box = this->FindBox(positions, margin);
+        ranges[id] = box.IsEmpty() ? Rectangle() : this->GetTiles(box);
       }
       flat += flatHere;
     });
@@ -127,22 +128,6 @@ VoxelBox TetrahedronTiles::FindBox(const Positions& nodes, double margin) const
     box.Max[axis] = this->Voxels[2 * axis] + static_cast<std::int64_t>(high);
   }
   return box;
-}
-
-TetrahedronTiles::Range TetrahedronTiles::FindRange(const Positions& nodes, double margin) const
-{
-  Range range;
-  const VoxelBox box = this->FindBox(nodes, margin);
-  if (!box.IsEmpty())
-  {
-    const Rectangle tiles = this->GetTiles(box);
-    for (int axis = 0; axis < 2; ++axis)
-    {
-      range.Min[axis] = static_cast<std::int16_t>(tiles.Begin[axis]);
-      range.Max[axis] = static_cast<std::int16_t>(tiles.End[axis] - 1);
-    }
-  }
-  return range;
 }
 
 VoxelBox TetrahedronTiles::GetVoxels(std::int64_t tile) const

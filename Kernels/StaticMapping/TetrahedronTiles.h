@@ -32,11 +32,11 @@ public:
   std::int64_t GetNumberOfTiles(int axis) const { return this->Count[axis]; }
   VoxelBox GetVoxels(std::int64_t tile) const;
 
-  /// A range of tiles on y (0) and z (1), from Begin to End - 1.
+  /// A range of tiles on y (0) and z (1), from Begin to End - 1. By default empty.
   struct Rectangle
   {
-    std::int64_t Begin[2];
-    std::int64_t End[2];
+    std::int16_t Begin[2] = { 0, 0 };
+    std::int16_t End[2] = { 0, 0 };
   };
   /// Returns the tiles that contain the voxels of a box. The box must lie within the volume.
   Rectangle GetTiles(const VoxelBox& box) const
@@ -45,8 +45,9 @@ public:
     for (int axis = 0; axis < 2; ++axis)
     {
       const std::int64_t first = this->Voxels[2 * axis + 2];
-      tiles.Begin[axis] = (box.Min[axis + 1] - first) / this->Size[axis];
-      tiles.End[axis] = (box.Max[axis + 1] - first) / this->Size[axis] + 1;
+      tiles.Begin[axis] = static_cast<std::int16_t>((box.Min[axis + 1] - first) / this->Size[axis]);
+      tiles.End[axis] =
+        static_cast<std::int16_t>((box.Max[axis + 1] - first) / this->Size[axis] + 1);
     }
     return tiles;
   }
@@ -79,20 +80,13 @@ private:
   /// voxels. The nodes must be within the limit.
   VoxelBox FindBox(const Positions& nodes, double margin) const;
 
-  /// A range of tiles on y (0) and z (1), from Min to Max. By default empty.
-  struct Range
-  {
-    std::int16_t Min[2] = { 0, 0 };
-    std::int16_t Max[2] = { -1, -1 };
-  };
-  /// Returns the tiles with voxels in the bounding box of a tetrahedron, enlarged by a margin.
-  Range FindRange(const Positions& nodes, double margin) const;
+  /// Calls body(tile) for the tiles of a rectangle.
   template <typename Body>
-  void ForEachTile(const Range& range, Body&& body) const
+  void ForEachTile(const Rectangle& tiles, Body&& body) const
   {
-    for (std::int64_t z = range.Min[1]; z <= range.Max[1]; ++z)
+    for (std::int64_t z = tiles.Begin[1]; z < tiles.End[1]; ++z)
     {
-      for (std::int64_t y = range.Min[0]; y <= range.Max[0]; ++y)
+      for (std::int64_t y = tiles.Begin[0]; y < tiles.End[0]; ++y)
       {
         body(z * this->Count[0] + y);
       }

@@ -25,17 +25,14 @@ void ForEachVoxel(const Extent& voxels, Body&& body)
 {
   const std::int64_t width = GetSize(voxels, 0);
   const std::int64_t height = GetSize(voxels, 1);
-  ParallelFor(0, height * GetSize(voxels, 2), 16,
-    [&](std::int64_t begin, std::int64_t end)
+  ParallelForItems(height * GetSize(voxels, 2), 16,
+    [&](std::int64_t row)
     {
-      for (std::int64_t row = begin; row < end; ++row)
+      glm::ivec3 index(voxels[0], voxels[2] + static_cast<int>(row % height),
+        voxels[4] + static_cast<int>(row / height));
+      for (std::int64_t x = 0; x < width; ++x, ++index.x)
       {
-        glm::ivec3 index(voxels[0], voxels[2] + static_cast<int>(row % height),
-          voxels[4] + static_cast<int>(row / height));
-        for (std::int64_t x = 0; x < width; ++x, ++index.x)
-        {
-          body(index, row * width + x);
-        }
+        body(index, row * width + x);
       }
     });
 }
@@ -220,22 +217,18 @@ void VoxelJacobians::SetMapping(const Extent& voxels, const glm::dvec3& spacing,
   {
     links.assign(count, MakeLink(-1, glm::dvec3(0.0)));
     const std::int64_t width = GetSize(voxels, 0);
-    ParallelForParts(mapping.Runs.RowBegins.size() - 1, 64,
-      [&](std::size_t begin, std::size_t end)
+    ParallelForItems(mapping.Runs.RowBegins.size() - 1, 64,
+      [&](std::size_t row)
       {
-        for (std::size_t row = begin; row < end; ++row)
+        const std::uint32_t past = mapping.Runs.RowBegins[row + 1];
+        for (std::uint32_t i = mapping.Runs.RowBegins[row]; i < past; ++i)
         {
-          const std::uint32_t past = mapping.Runs.RowBegins[row + 1];
-          for (std::uint32_t i = mapping.Runs.RowBegins[row]; i < past; ++i)
+          const VertexRun& run = mapping.Runs.Runs[i];
+          const std::int64_t last = i + 1 < past ? mapping.Runs.Runs[i + 1].Begin : width;
+          for (std::int64_t x = run.Begin; run.Tetrahedron >= 0 && x < last; ++x)
           {
-            const VertexRun& run = mapping.Runs.Runs[i];
-            const std::int64_t last = i + 1 < past ? mapping.Runs.Runs[i + 1].Begin : width;
-            for (std::int64_t x = run.Begin; run.Tetrahedron >= 0 && x < last; ++x)
-            {
-              links[row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)]
-                .Tetrahedron =
-                mapping.Runs.Tetrahedra[static_cast<std::size_t>(run.Tetrahedron)].Tetrahedron;
-            }
+            links[row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)].Tetrahedron =
+              mapping.Runs.Tetrahedra[static_cast<std::size_t>(run.Tetrahedron)].Tetrahedron;
           }
         }
       });
@@ -259,34 +252,28 @@ void VoxelJacobians::Compute(const OutputMap& toOutput, const std::vector<glm::d
   const glm::dmat3 atRest = OutputTransform(toOutput).GetMatrix();
   const double volume = glm::determinant(atRest);
   std::vector<float> ofTetrahedra(tetrahedra.size());
-  ParallelForParts(tetrahedra.size(), 4096,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(tetrahedra.size(), 4096,
+    [&](std::size_t i)
     {
-      for (std::size_t i = begin; i < end; ++i)
+      BarycentricMap map;
+      if (!map.SetTetrahedron(tetrahedra[i], restPoints))
       {
-        BarycentricMap map;
-        if (!map.SetTetrahedron(tetrahedra[i], restPoints))
-        {
-          continue; // no voxel is linked to a flat tetrahedron
-        }
-        glm::dmat3 derivative = atRest;
-        for (int node = 0; node < 4; ++node)
-        {
-          derivative += glm::outerProduct(
-            GetVector(displacements, tetrahedra[i][static_cast<std::size_t>(node)]),
+        return; // no voxel is linked to a flat tetrahedron
+      }
+      glm::dmat3 derivative = atRest;
+      for (int node = 0; node < 4; ++node)
+      {
+        derivative +=
+          glm::outerProduct(GetVector(displacements, tetrahedra[i][static_cast<std::size_t>(node)]),
             map.GetGradient(node));
-        }
-        ofTetrahedra[i] = static_cast<float>(glm::determinant(derivative) / volume);
       }
+      ofTetrahedra[i] = static_cast<float>(glm::determinant(derivative) / volume);
     });
-  ParallelForParts(this->Owners.size(), 1 << 16,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(this->Owners.size(), 1 << 16,
+    [&](std::size_t i)
     {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        const std::int32_t owner = this->Owners[i];
-        jacobians[i] = owner >= 0 ? ofTetrahedra[static_cast<std::size_t>(owner)] : 1.0F;
-      }
+      const std::int32_t owner = this->Owners[i];
+      jacobians[i] = owner >= 0 ? ofTetrahedra[static_cast<std::size_t>(owner)] : 1.0F;
     });
   if (!this->Faded.IsEmpty())
   {

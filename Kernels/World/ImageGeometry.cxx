@@ -135,20 +135,17 @@ void ComputeWorldPositions(
   const glm::dmat4 toWorld = image.GetIndexToWorld();
   const std::int64_t width = GetSize(extent, 0);
   const std::int64_t height = GetSize(extent, 1);
-  ParallelFor(0, height * GetSize(extent, 2), 64,
-    [&](std::int64_t begin, std::int64_t end)
+  ParallelForItems(height * GetSize(extent, 2), 64,
+    [&](std::int64_t row)
     {
-      for (std::int64_t row = begin; row < end; ++row)
+      glm::dvec4 index(0.0, extent[2] + row % height, extent[4] + row / height, 1.0);
+      for (std::int64_t x = 0; x < width; ++x)
       {
-        glm::dvec4 index(0.0, extent[2] + row % height, extent[4] + row / height, 1.0);
-        for (std::int64_t x = 0; x < width; ++x)
+        index.x = static_cast<double>(extent[0] + x);
+        const glm::dvec3 position = glm::dvec3(toWorld * index) - origin;
+        for (std::size_t axis = 0; axis < 3; ++axis)
         {
-          index.x = static_cast<double>(extent[0] + x);
-          const glm::dvec3 position = glm::dvec3(toWorld * index) - origin;
-          for (std::size_t axis = 0; axis < 3; ++axis)
-          {
-            positions[axis][row * width + x] = static_cast<float>(position[static_cast<int>(axis)]);
-          }
+          positions[axis][row * width + x] = static_cast<float>(position[static_cast<int>(axis)]);
         }
       }
     });

@@ -92,25 +92,22 @@ void IndexDeformation::UpdateDerived(
   const DerivedNodes& derived, std::size_t count, std::vector<std::atomic<bool>>& changed)
 {
   std::atomic<bool> tooFar{ false };
-  ParallelForParts(derived.GetCount(), PointsPerBlock,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(derived.GetCount(), PointsPerBlock,
+    [&](std::size_t i)
     {
-      for (std::size_t i = begin; i < end; ++i)
+      const glm::vec3 sum(
+        derived.Sum(i, [&](std::int32_t node) { return GetVector(this->Vectors.data(), node); }));
+      float* last = this->Vectors.data() + 3 * (count + i);
+      if (std::memcmp(last, &sum.x, 3 * sizeof(float)) != 0)
       {
-        const glm::vec3 sum(
-          derived.Sum(i, [&](std::int32_t node) { return GetVector(this->Vectors.data(), node); }));
-        float* last = this->Vectors.data() + 3 * (count + i);
-        if (std::memcmp(last, &sum.x, 3 * sizeof(float)) != 0)
+        std::copy_n(&sum.x, 3, last);
+        changed[(count + i) / PointsPerBlock].store(true, std::memory_order_relaxed);
+      }
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (!(std::abs(sum[axis]) <= LargestDisplacement))
         {
-          std::copy_n(&sum.x, 3, last);
-          changed[(count + i) / PointsPerBlock].store(true, std::memory_order_relaxed);
-        }
-        for (int axis = 0; axis < 3; ++axis)
-        {
-          if (!(std::abs(sum[axis]) <= LargestDisplacement))
-          {
-            tooFar = true;
-          }
+          tooFar = true;
         }
       }
     });

@@ -21,17 +21,14 @@ void CopyVectors(const VectorView& from, std::vector<glm::dvec3>& to, NodeFaults
   to.resize(from.Count);
   faults.Reset();
   faults.Resize(from.Count);
-  ParallelForParts(from.Count, NodesAtATime,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(from.Count, NodesAtATime,
+    [&](std::size_t i)
     {
-      for (std::size_t i = begin; i < end; ++i)
+      to[i] = from.Get(i);
+      if (!IsFinite(to[i]))
       {
-        to[i] = from.Get(i);
-        if (!IsFinite(to[i]))
-        {
-          to[i] = glm::dvec3(0.0);
-          faults.Mark(static_cast<std::int64_t>(i), NodeFaults::NotFinite);
-        }
+        to[i] = glm::dvec3(0.0);
+        faults.Mark(static_cast<std::int64_t>(i), NodeFaults::NotFinite);
       }
     });
 }
@@ -133,14 +130,9 @@ void WorldMesh::UpdatePoints(const ImageGeometry& volume)
   CheckFaults(this->PointFaults, this->Cells.Tetrahedra, "Point");
   std::vector<glm::dvec3> points(this->WorldPoints.size());
   const glm::dmat4 transform = volume.GetWorldToIndex();
-  ParallelForParts(points.size(), NodesAtATime,
-    [&](std::size_t begin, std::size_t end)
-    {
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        points[i] = glm::dvec3(transform * glm::dvec4(this->WorldPoints[i], 1.0));
-      }
-    });
+  ParallelForItems(points.size(), NodesAtATime,
+    [&](std::size_t i)
+    { points[i] = glm::dvec3(transform * glm::dvec4(this->WorldPoints[i], 1.0)); });
   this->Points = this->AddDerived(std::move(points));
   ++this->ShapeVersion;
 }
