@@ -248,7 +248,7 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
   }
   // Take one brick at a time if there are few bricks for each compute unit.
   const int leastForTurns = 32 * static_cast<int>(this->Device.GetContext().GetNumberOfUnits());
-  std::vector<PlannedLaunch> launcher;
+  std::vector<PlannedLaunch> launches;
   for (const VolumeChunk& chunk : this->Volume.GetChunks())
   {
     for (int begin = chunk.LayersBegin; begin < chunk.LayersEnd;)
@@ -265,11 +265,11 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanAll(
       this->Volume.GetBricks().AppendBricks(p.LayersBegin, p.LayersEnd, bricks);
       p.ListEnd = static_cast<int>(bricks.size());
       p.Portion = p.ListEnd - p.ListBegin < leastForTurns ? 1 : BrickGrid::BricksInTurn;
-      launcher.push_back({ chunk, p });
+      launches.push_back({ chunk, p });
       begin = p.LayersEnd;
     }
   }
-  return launcher;
+  return launches;
 }
 
 std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanSome(
@@ -284,15 +284,15 @@ std::vector<ExactPasses::PlannedLaunch> ExactPasses::PlanSome(
   const std::size_t step = static_cast<std::size_t>(p.BrickCount[0]) *
     static_cast<std::size_t>(p.BrickCount[1]) *
     static_cast<std::size_t>(this->GetLayersPerLaunch() / DEFORMVOLUME_BRICK_Z);
-  std::vector<PlannedLaunch> launcher;
+  std::vector<PlannedLaunch> launches;
   for (std::size_t begin = 0; begin < bricks.size(); begin += step)
   {
     p.ListBegin = static_cast<int>(begin);
     p.ListEnd = static_cast<int>(std::min(begin + step, bricks.size()));
-    launcher.push_back({ chunk, p });
+    launches.push_back({ chunk, p });
   }
-  this->Launcher.ExpectAtLeast(launcher.size());
-  return launcher;
+  this->Launcher.ExpectAtLeast(launches.size());
+  return launches;
 }
 
 void ExactPasses::Launch(const DeformRequest& request, cl::Kernel& kernel, ResamplingKernel form,
@@ -345,9 +345,9 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
 {
   output.GetLargeCells().Clear();
   std::vector<cl_uint> all;
-  const std::vector<PlannedLaunch> launcher =
+  const std::vector<PlannedLaunch> launches =
     bricks ? this->PlanSome(output, pass, *bricks) : this->PlanAll(output, pass, all);
-  if (launcher.empty())
+  if (launches.empty())
   {
     return;
   }
@@ -357,11 +357,11 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
   this->SendBricks(list);
   if (form == ResamplingKernel::Columns)
   {
-    this->RunColumns(request, output, kernel, launcher);
+    this->RunColumns(request, output, kernel, launches);
     return;
   }
-  this->PrepareKernel(kernel, launcher.front().Chunk, output, form, launcher.front().Parameters);
-  for (const auto& [chunk, p] : launcher)
+  this->PrepareKernel(kernel, launches.front().Chunk, output, form, launches.front().Parameters);
+  for (const auto& [chunk, p] : launches)
   {
     this->SetArguments(kernel, chunk, output, form, p);
     this->Launch(request, kernel, form, p);
@@ -369,16 +369,16 @@ void ExactPasses::Run(const DeformRequest& request, const OutputSlab& output, in
 }
 
 void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& output,
-  cl::Kernel& columns, const std::vector<PlannedLaunch>& launcher)
+  cl::Kernel& columns, const std::vector<PlannedLaunch>& launches)
 {
   const auto most = static_cast<int>(this->Deferred.GetMostBricks());
   int used = 0;
-  for (const PlannedLaunch& launch : launcher)
+  for (const PlannedLaunch& launch : launches)
   {
     used = std::max(used, launch.Parameters.ListEnd - launch.Parameters.ListBegin);
   }
   this->Deferred.Reserve(static_cast<std::uint64_t>(used));
-  const PlannedLaunch& first = launcher.front();
+  const PlannedLaunch& first = launches.front();
   const int pass = first.Parameters.Pass;
   std::array<std::pair<ResamplingKernel, cl::Kernel>, 3> kernels{ {
     { ResamplingKernel::Columns, columns },
@@ -391,7 +391,7 @@ void ExactPasses::RunColumns(const DeformRequest& request, const OutputSlab& out
   {
     this->PrepareKernel(kernel, first.Chunk, output, form, first.Parameters);
   }
-  for (const auto& [chunk, planned] : launcher)
+  for (const auto& [chunk, planned] : launches)
   {
     KernelParameters p = planned;
     for (p.ListEnd = p.ListBegin; p.ListEnd < planned.ListEnd; p.ListBegin = p.ListEnd)

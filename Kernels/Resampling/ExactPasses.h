@@ -73,7 +73,7 @@ private:
     const KernelParameters& p);
   /// Launches the kernel for columns, each time followed by the kernels for deferred cells.
   void RunColumns(const DeformRequest& request, const OutputSlab& output, cl::Kernel& columns,
-    const std::vector<PlannedLaunch>& launcher);
+    const std::vector<PlannedLaunch>& launches);
   /// Returns the size of a work-group of the kernel for columns.
   std::size_t GetColumnGroup(const cl::Kernel& kernel);
 
