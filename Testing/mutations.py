@@ -449,6 +449,8 @@ MUTATIONS = {
     "jacobian-beside": ("Kernels/StaticMapping/VoxelJacobians.cxx",
                         "alongField[axis] = this->GetSlopeBeside(middle, axis, halfStep);",
                         "alongField[axis] = glm::dvec3(0.0);", ["Cxx.TestExtraArrays"]),
+    "face-forces": ("Kernels/Physics/MidSideNodes.cxx", "] += face.Area;", "] += 1.0;",
+                    [("TestMidSideNodes", "*")]),
     "body-unit": ("Filters/Physics/BodyReading.cxx", "radius * settings.UnitLength", "radius",
                   ["Cxx.TestElasticDeformation"]),
     "body-taken": ("Filters/Physics/BodyReading.cxx", "isTaken[node] == 0 && ", "", ["Cxx.TestElasticDeformation"]),

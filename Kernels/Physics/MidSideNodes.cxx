@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MidSideNodes.h"
 
+#include "BoundaryFaces.h"
 #include "ElasticBody.h"
 #include "Error.h"
+#include "FaceNeighbors.h"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -78,11 +82,86 @@ std::vector<Edge> FindEdges(const ElasticBody& body)
   return edges;
 }
 
+// A boundary face of a four-node tetrahedron, with forces at all three corners.
+struct LoadedFace
+{
+  std::size_t Tetrahedron;
+  std::size_t Opposite; // the corner of the tetrahedron that is opposite the face
+  std::array<std::int32_t, 3> Corners;
+  double Area;
+};
+
+std::vector<LoadedFace> FindLoadedFaces(
+  const ElasticBody& body, const std::vector<glm::dvec3>& forces)
+{
+  std::vector<LoadedFace> loaded;
+  const FaceNeighbors neighbors(body.Tetrahedra, body.Points.size());
+  for (std::size_t face = 0; face < neighbors.GetNumberOfFaces(); ++face)
+  {
+    const std::size_t t = face / 4;
+    const auto corners =
+      TetrahedronFace{ 0, static_cast<std::int32_t>(face % 4) }.GetNodes(body.Tetrahedra[t]);
+    const auto at = [&](const std::vector<glm::dvec3>& vectors, std::size_t i)
+    { return vectors[static_cast<std::size_t>(corners[i])]; };
+    const glm::dvec3 none(0.0);
+    if (neighbors.GetNext(face) == face && body.MidSides[t][0] < 0 && at(forces, 0) != none &&
+      at(forces, 1) != none && at(forces, 2) != none)
+    {
+      const glm::dvec3 origin = at(body.Points, 0);
+      const double area =
+        0.5 * glm::length(glm::cross(at(body.Points, 1) - origin, at(body.Points, 2) - origin));
+      loaded.push_back({ t, face % 4, corners, area });
+    }
+  }
+  return loaded;
+}
+
+// Passes the forces at the corners of faces on to the mid-side nodes of the faces.
+void PassForcesOn(
+  const ElasticBody& body, const std::vector<LoadedFace>& faces, std::vector<glm::dvec3>& forces)
+{
+  std::vector<double> areas(forces.size(), 0.0);
+  for (const LoadedFace& face : faces)
+  {
+    for (const std::int32_t corner : face.Corners)
+    {
+      areas[static_cast<std::size_t>(corner)] += face.Area;
+    }
+  }
+  std::vector<glm::dvec3> passed(body.Points.size(), glm::dvec3(0.0));
+  for (const LoadedFace& face : faces)
+  {
+    for (std::size_t edge = 0; edge < 6; ++edge)
+    {
+      const auto [a, b] = TetrahedronEdges[edge];
+      for (const std::size_t end : { a, b })
+      {
+        const auto corner = static_cast<std::size_t>(body.Tetrahedra[face.Tetrahedron][end]);
+        if (a != face.Opposite && b != face.Opposite)
+        {
+          // Each corner is an end of two edges of the face.
+          passed[static_cast<std::size_t>(body.MidSides[face.Tetrahedron][edge])] +=
+            0.5 * face.Area / areas[corner] * forces[corner];
+        }
+      }
+    }
+  }
+  for (std::size_t node = 0; node < forces.size(); ++node)
+  {
+    passed[node] += areas[node] > 0.0 ? glm::dvec3(0.0) : forces[node];
+  }
+  forces = std::move(passed);
+}
+
 } // namespace
 
-std::vector<std::array<std::int32_t, 2>> AddMidSideNodes(ElasticBody& body)
+std::vector<std::array<std::int32_t, 2>> AddMidSideNodes(
+  ElasticBody& body, std::vector<glm::dvec3>* forces)
 {
   body.MidSides.resize(body.Tetrahedra.size(), { { -1, -1, -1, -1, -1, -1 } });
+  const bool hasForces = forces && !forces->empty();
+  const std::vector<LoadedFace> loadedFaces =
+    hasForces ? FindLoadedFaces(body, *forces) : std::vector<LoadedFace>();
   std::vector<Edge> edges = FindEdges(body);
   std::vector<std::array<std::int32_t, 2>> ends;
   for (Edge& edge : edges)
@@ -115,6 +194,10 @@ std::vector<std::array<std::int32_t, 2>> AddMidSideNodes(ElasticBody& body)
         [](const Edge& a, std::uint64_t key)
         { return a.Key < key; })->Node;
     });
+  if (hasForces)
+  {
+    PassForcesOn(body, loadedFaces, *forces);
+  }
   return ends;
 }
 

@@ -5,6 +5,8 @@
 #include "DeformVolumeExport.h"
 #include "Tetrahedron.h"
 
+#include <glm/vec3.hpp>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -29,8 +31,15 @@ constexpr std::size_t TetrahedronEdges[6][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 }, {
 ///
 /// New nodes are numbered by the lower end of their edge, then by the other end.
 ///
+/// forces: of the nodes; empty or null: none. Gets the forces of the new nodes. A uniform traction
+/// on a face of ten-node tetrahedra acts on its mid-side nodes only, in equal parts. So the force
+/// of a corner is passed on to the mid-side nodes of the boundary faces of four-node tetrahedra
+/// that have forces at all three corners. Each of these faces gets a part that is proportional to
+/// its area. The forces of other corners do not change.
+///
 /// Throws an Error if tetrahedra have different mid-side nodes for one edge.
-DEFORMVOLUME_EXPORT std::vector<std::array<std::int32_t, 2>> AddMidSideNodes(ElasticBody& body);
+DEFORMVOLUME_EXPORT std::vector<std::array<std::int32_t, 2>> AddMidSideNodes(
+  ElasticBody& body, std::vector<glm::dvec3>* forces = nullptr);
 
 /// Splits mid-side nodes after a cut (SplitMesh). Tetrahedra that still share an edge share its
 /// mid-side node. Where one edge became several, the first tetrahedron keeps the node, and the

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -83,6 +85,51 @@ TEST(MidSideNodes, GivenOnesStay)
   const std::string error = GetError([&] { AddMidSideNodes(body); });
   EXPECT_NE(error.find("1 edge with more than one mid-side node"), std::string::npos) << error;
   EXPECT_NE(error.find("between the nodes 1 and 2"), std::string::npos) << error;
+}
+
+// Forces at the corners of boundary faces of four-node tetrahedra, by the areas of these faces.
+TEST(MidSideNodes, TakeForcesOfFaces)
+{
+  ElasticBody body = MakeNeighbors();
+  body.Points[3].z = 2.0; // the faces 0 1 3 and 0 2 3 are twice as large as the face 0 1 2
+  const auto toForces = [](std::initializer_list<double> values)
+  {
+    std::vector<glm::dvec3> forces;
+    std::transform(values.begin(), values.end(), std::back_inserter(forces),
+      [](double value) { return glm::dvec3(0.0, value, 0.0); });
+    return forces;
+  };
+  std::vector<glm::dvec3> forces = toForces({ 5.0, 3.0, 6.0, 1.0, 0.0 });
+  AddMidSideNodes(body, &forces);
+  ASSERT_EQ(forces.size(), body.Points.size());
+  EXPECT_EQ(std::count(forces.begin(), forces.begin() + 5, glm::dvec3(0.0)), 5);
+  double sum = 0.0;
+  for (const glm::dvec3& force : forces)
+  {
+    sum += force.y;
+  }
+  EXPECT_NEAR(sum, 15.0, 1e-14);
+  // Half of a third of each force at the ends of the edge 1 2, and of all forces at the edge 0 3.
+  const auto get = [&](std::size_t edge)
+  { return forces[static_cast<std::size_t>(body.MidSides[0][edge])].y; };
+  EXPECT_NEAR(get(1), 0.5 * (3.0 + 6.0) / 3.0, 1e-15);
+  EXPECT_NEAR(get(3), 0.5 * (5.0 * 4.0 / 5.0 + 1.0), 1e-15);
+
+  // The face 1 2 3 is inside the body, and ten-node tetrahedra have forces of their own.
+  for (const bool isTenNode : { false, true })
+  {
+    ElasticBody other = MakeNeighbors();
+    if (isTenNode)
+    {
+      AddMidSideNodes(other);
+    }
+    forces = toForces({ isTenNode ? 1.0 : 0.0, 1.0, 1.0, 1.0, 0.0 });
+    forces.resize(other.Points.size());
+    std::vector<glm::dvec3> wanted = forces;
+    AddMidSideNodes(other, &forces);
+    wanted.resize(other.Points.size());
+    EXPECT_EQ(forces, wanted);
+  }
 }
 
 TEST(MidSideNodes, SplitWithTheirEdges)
