@@ -167,4 +167,17 @@ Residuals FindResiduals(const EquilibriumProblem& problem, const SlidingNodes& s
   return residuals;
 }
 
+std::vector<glm::dvec3> FindReactions(const EquilibriumProblem& problem,
+  const SlidingNodes& sliding, const std::vector<glm::dvec3>& forces)
+{
+  std::vector<glm::dvec3> reactions(forces.size(), glm::dvec3(0.0));
+  for (std::size_t node = 0; node < forces.size(); ++node)
+  {
+    const glm::dvec3 left = forces[node] - problem.Loads[node];
+    // What is left within the plane of a free node is a residual.
+    reactions[node] = problem.IsFree[node] != 0 ? left - sliding.Project(node, left) : left;
+  }
+  return reactions;
+}
+
 } // namespace deformvolume

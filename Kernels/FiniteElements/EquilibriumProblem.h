@@ -54,6 +54,11 @@ struct Residuals
 Residuals FindResiduals(const EquilibriumProblem& problem, const SlidingNodes& sliding,
   const std::vector<glm::dvec3>& forces);
 
+/// Returns the forces of the supports on the nodes, in N: the elastic forces minus the loads. At
+/// free nodes only the part that keeps a sliding node in its plane or on its line.
+std::vector<glm::dvec3> FindReactions(const EquilibriumProblem& problem,
+  const SlidingNodes& sliding, const std::vector<glm::dvec3>& forces);
+
 /// The absolute value of the largest component.
 double LargestComponent(const glm::dvec3& vector);
 

@@ -59,6 +59,7 @@ EquilibriumSolver::EquilibriumSolver(AbortCheck& abortCheck, const ElasticBody& 
   , Tangent(this->Body.Points, this->Elements, this->Sliding)
 {
   this->Last.Displacements.assign(body.Points.size(), glm::dvec3(0.0));
+  this->Reactions = this->Last.Displacements;
   this->Tangent.SetPattern(abortCheck, MakeNodePattern(abortCheck, body));
   this->Elements.SetPattern(abortCheck, this->Tangent.GetMatrix().GetPattern());
   this->UpdateScale(abortCheck);
@@ -623,6 +624,7 @@ EquilibriumReport EquilibriumSolver::FindEquilibrium(
   std::vector<bool> isFree = FindFreePieces(problem.Supports);
   this->MoveFrozenPieces(problem, isFree, state);
   report.StrainEnergy = state.Sums.Energy;
+  this->Reactions = FindReactions(problem, this->Sliding, state.Forces);
   const std::vector<unsigned char> isInverted =
     FindInvertedSplits(abortCheck, this->Body, state.Displacements);
   report.NumberOfInvertedTetrahedra = std::count(isInverted.begin(), isInverted.end(), 1);

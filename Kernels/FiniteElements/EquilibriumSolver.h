@@ -33,6 +33,7 @@ public:
   void SetDisplacements(const std::vector<glm::dvec3>& displacements);
   std::vector<glm::dvec3> GetForces() const;
   std::vector<ElementResults> GetElementResults() const;
+  const std::vector<glm::dvec3>& GetReactions() const { return this->Reactions; }
 
 private:
   // Displacements, and the forces and energies that follow from them.
@@ -118,6 +119,8 @@ private:
   // The state after the last call. Its forces are still valid if HasForces.
   State Last;
   bool HasForces = false;
+  // The reactions of the last call.
+  std::vector<glm::dvec3> Reactions;
   // The free pieces of the last call, which have their shape at rest.
   std::vector<bool> RigidPieces;
   // The last call found an equilibrium in the mode Converged: RemoveDents has nothing new to find

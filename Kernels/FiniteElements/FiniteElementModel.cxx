@@ -108,6 +108,11 @@ std::vector<glm::dvec3> FiniteElementModel::GetForces() const
   return this->Impl->GetSolver().GetForces();
 }
 
+const std::vector<glm::dvec3>& FiniteElementModel::GetReactions() const
+{
+  return this->Impl->GetSolver().GetReactions();
+}
+
 std::vector<ElementResults> FiniteElementModel::GetElementResults() const
 {
   return this->Impl->GetSolver().GetElementResults();

@@ -68,6 +68,11 @@ public:
   /// its load. The force of a held node equals its load plus the reaction of the support.
   std::vector<glm::dvec3> GetForces() const;
 
+  /// Returns the reaction of each node in the last call of Solve, in N: the force of the support on
+  /// the body. It is 0 at nodes that are neither fixed, held nor sliding, and on pieces that are
+  /// not held. In equilibrium, the sum of reactions and loads is 0.
+  const std::vector<glm::dvec3>& GetReactions() const;
+
   /// Returns the stress and deformation of each tetrahedron.
   std::vector<ElementResults> GetElementResults() const;
 
