@@ -17,10 +17,13 @@
  * Tetrahedra have ten nodes: their corners, and a mid-side node in the middle of each edge. The
  * filter adds mid-side nodes to vtkTetra cells. vtkQuadraticTetra cells have mid-side nodes, each
  * near the middle of its edge, which may be curved. A mesh may have cells of both types. "Force"
- * acts on nodes as given. An added node has no force. It is fixed if both ends of its edge are
+ * acts on nodes as given, except on boundary faces of vtkTetra cells with forces at all three
+ * corners: these forces are passed on to the mid-side nodes of the faces. So a uniform traction is
+ * exact if each corner has the traction times a third of the area of each loaded face. "Force" of
+ * the output has the forces after this step. An added node is fixed if both ends of its edge are
  * fixed, with the mean of their prescribed displacements. It slides in the plane of an end if its
  * edge lies in this plane, within a thousandth, and the other end is fixed or slides in the same
- * plane. To fix other mid-side nodes, or to let them slide, as on curved surfaces, use
+ * plane. To fix or load other mid-side nodes, or to let them slide, as on curved surfaces, use
  * vtkQuadraticTetra cells with these arrays. A mesh has as many nodes as one of linear tetrahedra
  * with edges of half the length.
  *

@@ -301,11 +301,7 @@ void AddMidSides(std::vector<MidSideNodes>&& ofCells, BodyMesh& mesh)
   CheckMidSides(body);
   mesh.HasNodesOfCells = std::all_of(body.MidSides.begin(), body.MidSides.end(),
     [](const MidSideNodes& nodes) { return nodes[0] >= 0; });
-  mesh.MidSideEnds = AddMidSideNodes(body);
-  if (!mesh.Forces.empty())
-  {
-    mesh.Forces.resize(body.Points.size(), glm::dvec3(0.0));
-  }
+  mesh.MidSideEnds = AddMidSideNodes(body, &mesh.Forces);
   for (const std::array<std::int32_t, 2>& ends : mesh.MidSideEnds)
   {
     const auto a = static_cast<std::size_t>(ends[0]);

@@ -86,9 +86,10 @@ Stamp GetBodyStamp(vtkUnstructuredGrid* grid);
 /// arrays of another shape, for boundary conditions that mass-spring dynamics does not support if
 /// the body is not quadratic, and for bodies that CheckBody() rejects.
 ///
-/// A mid-side node that is added here has no force. It is fixed if both ends of its edge are fixed,
-/// with the mean of their prescribed displacements. It slides in the plane of an end if the edge
-/// lies in this plane, and the other end is fixed or slides in the same plane.
+/// Forces at corners are passed on to mid-side nodes as in AddMidSideNodes(). A mid-side node that
+/// is added here is fixed if both ends of its edge are fixed, with the mean of their prescribed
+/// displacements. It slides in the plane of an end if the edge lies in this plane, and the other
+/// end is fixed or slides in the same plane.
 BodyMesh ReadBody(vtkUnstructuredGrid* grid, const BodySettings& settings);
 
 /// Name of the point array of handles with the node that each one holds.

@@ -414,7 +414,7 @@ void ElasticSession::FillPointData(vtkUnstructuredGrid* grid, vtkUnstructuredGri
     SlidingNormalName, [&](std::size_t node, int i) { return body.SlidingNormals[node][i]; });
   overwrite(SecondSlidingNormalName,
     [&](std::size_t node, int i) { return body.SecondSlidingNormals[node][i]; });
-  // Cuts divide the forces of nodes, and mid-side nodes have none.
+  // Forces are passed on to mid-side nodes, and cuts divide them.
   vtkDataArray* forces = mesh.Forces.empty() ? nullptr : getArray(ForceName);
   for (vtkIdType node = 0; forces && node < forces->GetNumberOfTuples(); ++node)
   {

@@ -14,8 +14,10 @@
 #include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/trigonometric.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -199,7 +201,10 @@ TEST(TenNodeElements, Output)
   cube->InsertNextCell(VTK_TRIANGLE, 3, triangle);
   cube->GetPoints()->InsertNextPoint(1.0, 1.0, 1.0); // no cell uses this point
   cube->GetPointData()->GetArray("Fixed")->InsertNextTuple1(1.0);
-  AddPointVectors(cube, "Force", [](const glm::dvec3&) { return glm::dvec3(1e-3, 0.0, 0.0); });
+  // No face has forces at all three corners.
+  const auto getForce = [](const glm::dvec3& p) { return p.x == p.y ? 1e-3 : 0.0; };
+  AddPointVectors(
+    cube, "Force", [&](const glm::dvec3& p) { return glm::dvec3(getForce(p), 0.0, 0.0); });
   vtkNew<vtkDoubleArray> heights;
   heights->SetName("Height");
   vtkNew<vtkIntArray> numbers;
@@ -245,7 +250,7 @@ TEST(TenNodeElements, Output)
   for (vtkIdType i = 0; i < before; ++i)
   {
     wrong += GetPoint(output, i) != GetPoint(cube, i) || get("Number", i) != double(i) ||
-      get("Force", i) != 1e-3;
+      get("Force", i) != getForce(GetPoint(cube, i));
   }
   EXPECT_EQ(wrong, 0);
   int edges = 0;
@@ -286,18 +291,18 @@ TEST(TenNodeElements, Output)
   elements.Filter->SetGravity(0.0, 0.0, 2.0);
   EXPECT_EQ(elements.TryUpdate(), "");
   EXPECT_EQ(output->GetPointData()->GetArray("Height"), madeHeights);
-  cube->GetPointData()->GetArray("Force")->Fill(2e-3);
+  cube->GetPointData()->GetArray("Force")->SetComponent(0, 0, 2e-3);
   cube->GetPointData()->GetArray("Force")->Modified();
   EXPECT_EQ(elements.TryUpdate(), "");
   EXPECT_TRUE(output->GetPoints() == points && output->GetCells() == cells);
-  EXPECT_EQ(get("Force", 3), 2e-3);
+  EXPECT_EQ(get("Force", 0), 2e-3);
   EXPECT_EQ(get("Force", NodesOfCube), 0.0);
   // The program may have called Modified() of the mesh only.
-  vtkDoubleArray::SafeDownCast(cube->GetPointData()->GetArray("Force"))->SetValue(9, 3e-3);
+  vtkDoubleArray::SafeDownCast(cube->GetPointData()->GetArray("Force"))->SetValue(0, 3e-3);
   heights->SetValue(3, 7.0);
   cube->Modified();
   EXPECT_EQ(elements.TryUpdate(), "");
-  EXPECT_EQ(get("Force", 3), 3e-3);
+  EXPECT_EQ(get("Force", 0), 3e-3);
   EXPECT_EQ(get("Height", 3), 7.0);
 
   // The output is a valid mesh of ten-node tetrahedra, whose points and cells are passed.
@@ -512,6 +517,91 @@ TEST(TenNodeElements, FiltersBehind)
   }
   std::cout << "geometry follows nodes within " << worst << " of " << largest << " m\n";
   EXPECT_TRUE(largest > 5e-4 && worst < 1e-9); // displacements are floats
+}
+
+// A uniform traction on irregular tetrahedra that slide in three planes: each corner has a third of
+// the force on its faces. The stress is uniaxial.
+TEST(TenNodeElements, Traction)
+{
+  constexpr double traction = 500.0; // in Pa, 5 % of the Young modulus
+  constexpr double tolerance = 1e-5; // residual forces are at most 1e-6 of the largest force
+  for (const double unit : { 1e-3, 1.0 })
+  {
+    auto cube = MakeCube();
+    std::map<vtkIdType, double> forces;
+    for (vtkIdType i = 0; i < cube->GetNumberOfPoints(); ++i)
+    {
+      glm::dvec3 p = GetPoint(cube, i);
+      const glm::dvec3 moved = p + 0.1 * Edge * glm::sin(1e3 * glm::dvec3(p.y, p.z, p.x) + 1.0);
+      const glm::dvec3 inside = glm::step(1e-6, p) * glm::step(p, glm::dvec3(Edge - 1e-6));
+      p = (p + inside * (moved - p)) / unit;
+      cube->GetPoints()->SetPoint(i, &p.x);
+    }
+    const double edge = Edge / unit;
+    for (vtkIdType cell = 0; cell < cube->GetNumberOfCells(); ++cell)
+    {
+      std::vector<vtkIdType> top = GetIds(cube, cell);
+      top.erase(std::remove_if(top.begin(), top.end(),
+                  [&](vtkIdType i) { return GetPoint(cube, i).z < 0.99 * edge; }),
+        top.end());
+      if (top.size() == 3)
+      {
+        const glm::dvec3 origin = GetPoint(cube, top[0]);
+        const double area = 0.5 * unit * unit *
+          glm::length(glm::cross(GetPoint(cube, top[1]) - origin, GetPoint(cube, top[2]) - origin));
+        for (const vtkIdType corner : top)
+        {
+          forces[corner] += traction * area / 3.0;
+        }
+      }
+    }
+    const auto getNormal = [](const glm::dvec3& p, int number)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (p[axis] == 0.0 && number-- == 0)
+        {
+          return glm::dvec3(axis == 0, axis == 1, axis == 2);
+        }
+      }
+      return glm::dvec3(0.0);
+    };
+    const auto isOrigin = [](const glm::dvec3& p) { return p == glm::dvec3(0.0); };
+    FixPoints(cube, isOrigin);
+    for (const int number : { 0, 1 })
+    {
+      AddPointVectors(cube, number == 0 ? "SlidingNormal" : "SecondSlidingNormal",
+        [&](const glm::dvec3& p) { return isOrigin(p) ? p : getNormal(p, number); });
+    }
+    vtkDoubleArray* array =
+      AddPointVectors(cube, "Force", [](const glm::dvec3&) { return glm::dvec3(0.0); });
+    for (const auto& [node, force] : forces)
+    {
+      array->SetComponent(node, 2, force);
+    }
+    Elements elements(cube);
+    elements.Filter->SetLengthUnit(
+      unit == 1.0 ? vtkElasticDeformation::METRE : vtkElasticDeformation::MILLIMETRE);
+    elements.Filter->ElementResultsOn();
+    EXPECT_EQ(elements.TryUpdate(), "");
+    vtkUnstructuredGrid* output = elements.Filter->GetOutput();
+    const double stretch = 1.0 + elements.Copy()->GetComponent(forces.begin()->first, 2) / edge;
+    EXPECT_GT(stretch, 1.04);
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+    {
+      EXPECT_NEAR(elements.Copy()->GetComponent(i, 2), (stretch - 1.0) * GetPoint(output, i).z,
+        tolerance * edge);
+    }
+    vtkCellData* cells = output->GetCellData();
+    for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
+    {
+      // The traction acts on the area at rest.
+      const double determinant =
+        cells->GetArray("DeformationGradientDeterminant")->GetComponent(cell, 0);
+      EXPECT_NEAR(cells->GetArray("Stress")->GetComponent(cell, 2),
+        traction * stretch / determinant, 10.0 * tolerance * traction);
+    }
+  }
 }
 
 // A cut through the whole bar: the two sides share no nodes, and new nodes have the array values of
