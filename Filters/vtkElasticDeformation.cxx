@@ -46,19 +46,30 @@ bool HasTimes(vtkInformation* info)
   return info && (info->Has(Pipeline::TIME_STEPS()) || info->Has(Pipeline::TIME_RANGE()));
 }
 
-void AddElementResults(vtkUnstructuredGrid* output, const BodyMesh& mesh,
-  const std::vector<deformvolume::ElementResults>& results)
+void AddElementResults(
+  vtkUnstructuredGrid* output, const BodyMesh& mesh, ElasticSimulation& simulation)
 {
-  const auto add = [&](const char* name, int components)
+  const auto addTo =
+    [](vtkDataSetAttributes* data, const char* name, int components, vtkIdType tuples)
   {
     vtkNew<vtkDoubleArray> array;
     array->SetName(name);
     array->SetNumberOfComponents(components);
-    array->SetNumberOfTuples(output->GetNumberOfCells());
+    array->SetNumberOfTuples(tuples);
     array->Fill(0.0);
-    output->GetCellData()->AddArray(array);
+    data->AddArray(array);
     return array->GetPointer(0);
   };
+  const std::vector<glm::dvec3> reactions = simulation.GetReactions();
+  if (!reactions.empty())
+  {
+    double* reaction =
+      addTo(output->GetPointData(), "ReactionForce", 3, output->GetNumberOfPoints());
+    std::copy_n(&reactions.front().x, 3 * reactions.size(), reaction);
+  }
+  const auto add = [&](const char* name, int components)
+  { return addTo(output->GetCellData(), name, components, output->GetNumberOfCells()); };
+  const std::vector<deformvolume::ElementResults> results = simulation.GetElementResults();
   constexpr int numberOfStresses = 6;
   double* stress = add("Stress", numberOfStresses);
   double* energy = add("StrainEnergyDensity", 1);
@@ -279,7 +290,7 @@ void vtkElasticDeformation::Execute(
   output->GetPointData()->SetVectors(displacements);
   if (this->ElementResults)
   {
-    AddElementResults(output, session.GetMesh(), simulation.GetElementResults());
+    AddElementResults(output, session.GetMesh(), simulation);
   }
   if (info->Has(Pipeline::UPDATE_TIME_STEP()))
   {

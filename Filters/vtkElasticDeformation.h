@@ -52,7 +52,7 @@
  * The mesh at rest, with the point array "Displacement" (float, three components, in the units of
  * the points), which is also the active vectors. On CPU devices it is a vtkFloatArray, on a device
  * with memory of its own a vtkDeviceVectorArray. The array is the same object, in the same memory,
- * in all executions for one mesh: make a deep copy to keep its values. ElementResults adds cell
+ * in all executions for one mesh: make a deep copy to keep its values. ElementResults adds
  * arrays. The first piece is the whole mesh, all others are empty. Appended points, which are
  * mid-side nodes of vtkFiniteElementDeformation and copies of nodes at cuts, follow the points of
  * the input.
@@ -299,7 +299,10 @@ public:
    * "Stress" (Cauchy, in Pa, the components xx yy zz xy yz xz), "StrainEnergyDensity" (J/m^3 of the
    * volume at rest) and "DeformationGradientDeterminant" (its deformed volume divided by its volume
    * at rest; less than 0 if it is inverted). A flat tetrahedron, with a determinant within 1e-12 of
-   * 0, has no volume for a stress: its "Stress" is 0. Default: off.
+   * 0, has no volume for a stress: its "Stress" is 0. vtkFiniteElementDeformation also adds the
+   * point array of doubles "ReactionForce": the force, in N, of the support or handle on each node
+   * that is fixed, held or slides; 0 at other nodes, and on pieces that are not held. In
+   * equilibrium, the sum of reactions, weight and "Force" is 0. Default: off.
    */
   vtkSetMacro(ElementResults, bool);
   vtkGetMacro(ElementResults, bool);

@@ -451,6 +451,8 @@ MUTATIONS = {
                         "alongField[axis] = glm::dvec3(0.0);", ["Cxx.TestExtraArrays"]),
     "face-forces": ("Kernels/Physics/MidSideNodes.cxx", "] += face.Area;", "] += 1.0;",
                     [("TestMidSideNodes", "*")]),
+    "reactions": ("Kernels/FiniteElements/EquilibriumProblem.cxx", "? left - sliding.Project(node, left)",
+                  "? sliding.Project(node, left)", ["Cxx.TestTenNodeElements"]),
     "body-unit": ("Filters/Physics/BodyReading.cxx", "radius * settings.UnitLength", "radius",
                   ["Cxx.TestElasticDeformation"]),
     "body-taken": ("Filters/Physics/BodyReading.cxx", "isTaken[node] == 0 && ", "", ["Cxx.TestElasticDeformation"]),

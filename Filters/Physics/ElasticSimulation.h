@@ -58,6 +58,8 @@ public:
   /// False at first, and after a device has failed.
   virtual bool HasBody() const = 0;
   virtual std::vector<ElementResults> GetElementResults() = 0;
+  /// Returns the force of the support on each node in the last frame, in N; empty: unknown.
+  virtual std::vector<glm::dvec3> GetReactions() { return {}; }
   /// Writes the displacements times a factor. The array is the same object until the number of
   /// nodes changes.
   virtual vtkDataArray* WriteOutput(double factor) = 0;

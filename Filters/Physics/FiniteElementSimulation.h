@@ -34,6 +34,7 @@ public:
   {
     return this->Model.GetElementResults();
   }
+  std::vector<glm::dvec3> GetReactions() override { return this->Model.GetReactions(); }
   vtkDataArray* WriteOutput(double factor) override;
 
 private:

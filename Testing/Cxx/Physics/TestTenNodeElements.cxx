@@ -18,6 +18,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/trigonometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -520,7 +521,7 @@ TEST(TenNodeElements, FiltersBehind)
 }
 
 // A uniform traction on irregular tetrahedra that slide in three planes: each corner has a third of
-// the force on its faces. The stress is uniaxial.
+// the force on its faces. The stress is uniaxial, and the reactions balance the loads.
 TEST(TenNodeElements, Traction)
 {
   constexpr double traction = 500.0; // in Pa, 5 % of the Young modulus
@@ -585,6 +586,21 @@ TEST(TenNodeElements, Traction)
     elements.Filter->ElementResultsOn();
     EXPECT_EQ(elements.TryUpdate(), "");
     vtkUnstructuredGrid* output = elements.Filter->GetOutput();
+    const auto sumReactions = [&]
+    {
+      glm::dvec3 sum(0.0);
+      for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+      {
+        glm::dvec3 reaction;
+        output->GetPointData()->GetArray("ReactionForce")->GetTuple(i, &reaction.x);
+        sum += reaction;
+        const glm::dvec3 p = GetPoint(output, i);
+        EXPECT_TRUE(glm::any(glm::equal(p, glm::dvec3(0.0))) || reaction == glm::dvec3(0.0));
+      }
+      return sum;
+    };
+    const glm::dvec3 load(0.0, 0.0, traction * Edge * Edge);
+    EXPECT_LE(glm::distance(sumReactions(), -load), tolerance * load.z);
     const double stretch = 1.0 + elements.Copy()->GetComponent(forces.begin()->first, 2) / edge;
     EXPECT_GT(stretch, 1.04);
     for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
@@ -600,6 +616,22 @@ TEST(TenNodeElements, Traction)
         cells->GetArray("DeformationGradientDeterminant")->GetComponent(cell, 0);
       EXPECT_NEAR(cells->GetArray("Stress")->GetComponent(cell, 2),
         traction * stretch / determinant, 10.0 * tolerance * traction);
+    }
+    // With gravity, and without the part of the body that a cut frees.
+    const glm::dvec3 gravity(3.0, -2.0, 5.0);
+    const glm::dvec3 weight = 1000.0 * Edge * Edge * Edge * gravity;
+    elements.Filter->SetGravity(gravity.x, gravity.y, gravity.z);
+    EXPECT_EQ(elements.TryUpdate(), "");
+    EXPECT_LE(glm::distance(sumReactions(), -load - weight), tolerance * load.z);
+    if (unit == 1.0)
+    {
+      elements.Filter->SetSheetData(MakeHorizontalSheet(0.5 * Edge + 1e-5));
+      EXPECT_EQ(elements.TryUpdate(), "");
+      EXPECT_EQ(elements.Filter->GetNumberOfFrozenPieces(), 1);
+      const glm::dvec3 sum = sumReactions();
+      const double share = glm::length(sum) / glm::length(weight);
+      EXPECT_LT(share, 0.8);
+      EXPECT_LE(glm::distance(sum, -share * weight), tolerance * load.z);
     }
   }
 }
