@@ -349,6 +349,9 @@ void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacem
       held.push_back({ static_cast<std::int32_t>(node), displacement });
     }
   };
+  // Nodes at the same distance from a handle may differ by rounding errors, also of floats.
+  constexpr double rounding = 1e-6;
+  const double reach = radius + rounding * mesh.Size;
   double least = std::numeric_limits<double>::infinity();
   std::size_t nearest = 0;
   for (std::size_t node = 0; node < body.Points.size(); ++node)
@@ -359,7 +362,7 @@ void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacem
       least = distance;
       nearest = node;
     }
-    if (radius > 0.0 && distance <= radius && mesh.IsUsed[node] != 0)
+    if (radius > 0.0 && distance <= reach && mesh.IsUsed[node] != 0)
     {
       add(node);
     }

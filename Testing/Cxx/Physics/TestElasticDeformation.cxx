@@ -869,6 +869,24 @@ TEST(ElasticDeformation, HandlesBetweenNodes)
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "no tetrahedron contains this position"));
 }
 
+// Nodes at the distance of the radius are held on all sides of a handle, in spite of rounding.
+TEST(ElasticDeformation, HandleRadiusOfNodes)
+{
+  vtkNew<vtkLatticeTetrahedraSource> lattice;
+  lattice->SetNumberOfNodes(5, 5, 13);
+  lattice->SetBounds(0.0, 9.6, 0.0, 9.6, 0.0, 28.8);
+  lattice->Update();
+  vtkUnstructuredGrid* bar = lattice->GetOutput();
+  FixPoints(bar, [](const glm::dvec3& p) { return p.z == 0.0; });
+  Simulated<vtkFiniteElementDeformation> simulated(bar);
+  simulated.Filter->SetLengthUnitToMillimetre();
+  simulated.Filter->SetHandleRadius(2.4);
+  simulated.Filter->SetHandlesData(MakeHandles({ { { 4.8, 4.8, 14.4 }, { 4.8, 4.8, 15.0 } } }));
+  EXPECT_EQ(simulated.TryUpdate(), "");
+  // The nodes are 1.2 mm apart on each axis. The centers of cells have none.
+  EXPECT_EQ(simulated.Filter->GetNumberOfHeldNodes(), 1 + 6 + 12 + 6);
+}
+
 TEST(ElasticDeformation, HangingBar)
 {
   CheckHangingBar<vtkMassSpringDeformation>(
