@@ -335,9 +335,11 @@ bool Contains(const ElasticBody& body, std::size_t tetrahedron, const glm::dvec3
   return std::min({ weights.x, weights.y, weights.z, weights.w }) >= -tolerance;
 }
 
-// Adds the nodes that a handle at a position holds. isTaken: whether another handle holds a node.
-void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacement,
-  const BodyMesh& mesh, std::vector<unsigned char>& isTaken, std::vector<HeldNode>& held)
+// Adds the nodes that a handle at a position holds. name: of the handle, for messages. isTaken:
+// whether another handle holds a node.
+void Hold(const std::string& name, const glm::dvec3& position, double radius,
+  const glm::dvec3& displacement, const BodyMesh& mesh, std::vector<unsigned char>& isTaken,
+  std::vector<HeldNode>& held)
 {
   const ElasticBody& body = mesh.Body;
   const std::size_t before = held.size();
@@ -381,19 +383,21 @@ void Hold(const glm::dvec3& position, double radius, const glm::dvec3& displacem
     // A handle that far away is in other units or in another world.
     if (least > mesh.Size)
     {
-      throw Error("The rest position of a handle is farther from the body than the body is long. "
-                  "Give it in the coordinates and the unit of length of the mesh at rest.");
+      throw Error(name +
+        " is farther from the body than the body is long. Give its rest position in the "
+        "coordinates and the unit of length of the mesh at rest.");
     }
     add(nearest);
   }
   if (held.size() == before)
   {
-    throw Error(radius > 0.0
-        ? "A handle holds no node that could move: no node is within its radius of its rest "
-          "position, and no tetrahedron contains this position, or all of their nodes are fixed or "
-          "held by another handle. Use a larger radius, or another rest position."
-        : "A handle holds no node that could move: the node nearest to its rest position is fixed, "
-          "or held by another handle. Use another rest position, or a radius greater than 0.");
+    throw Error(name +
+      (radius > 0.0
+          ? " holds no node that could move: no node is within its radius of its rest position, "
+            "and no tetrahedron contains this position, or all of their nodes are fixed or held by "
+            "another handle. Use a larger radius, or another rest position."
+          : " holds no node that could move: the node nearest to its rest position is fixed, or "
+            "held by another handle. Use another rest position, or a radius greater than 0."));
   }
 }
 
@@ -558,7 +562,10 @@ std::vector<HeldNode> ReadHandles(
       HoldNode(node, now - rest, mesh, isTaken, held);
       continue;
     }
-    Hold(rest, radius * settings.UnitLength, now - rest, mesh, isTaken, held);
+    const glm::dvec3& at = positions.Rest[i];
+    const std::string name = "Handle " + std::to_string(i) + " with the rest position (" +
+      FormatNumber(at.x) + ", " + FormatNumber(at.y) + ", " + FormatNumber(at.z) + ")";
+    Hold(name, rest, radius * settings.UnitLength, now - rest, mesh, isTaken, held);
   }
   return held;
 }

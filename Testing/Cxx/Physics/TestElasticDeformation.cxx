@@ -147,11 +147,14 @@ TYPED_TEST(ElasticModels, Misuse)
   EXPECT_EQ(simulated.Filter->GetNumberOfHeldNodes(), 1);
   handles->GetPointData()->RemoveArray("RestPosition");
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "no point array \"RestPosition\""));
-  simulated.Filter->SetHandlesData(MakeHandles({ { glm::dvec3(0.0), glm::dvec3(0.001) } }));
-  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "holds no node that could move"));
+  simulated.Filter->SetHandlesData(MakeHandles(
+    { { glm::dvec3(0.0, 0.0, 0.03), glm::dvec3(0.0) }, { glm::dvec3(0.0), glm::dvec3(0.001) } }));
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(),
+    "Handle 1 with the rest position (0, 0, 0) holds no node that could move"));
   simulated.Filter->SetHandleRadius(0.001);
-  simulated.Filter->SetHandlesData(MakeHandles({ { glm::dvec3(1.0), glm::dvec3(1.0) } }));
-  EXPECT_TRUE(HasPart(simulated.TryUpdate(), "holds no node that could move"));
+  simulated.Filter->SetHandlesData(MakeHandles({ { glm::dvec3(0.5), glm::dvec3(1.0) } }));
+  EXPECT_TRUE(HasPart(simulated.TryUpdate(),
+    "Handle 0 with the rest position (0.5, 0.5, 0.5) holds no node that could move"));
   simulated.Filter->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.01, 0.01, 0.03), glm::dvec3(nan) } }));
   EXPECT_TRUE(HasPart(simulated.TryUpdate(), "Point 0 of the handles"));
@@ -208,7 +211,8 @@ TEST(ElasticDeformation, ErrorsOfSubclasses)
   // A handle in other units.
   springs.Filter->SetHandlesData(
     MakeHandles({ { glm::dvec3(0.0, 0.0, 30.0), glm::dvec3(0.0, 0.0, 31.0) } }));
-  EXPECT_TRUE(HasPart(springs.TryUpdate(), "farther from the body than the body is long"));
+  EXPECT_TRUE(HasPart(springs.TryUpdate(),
+    "Handle 0 with the rest position (0, 0, 30) is farther from the body than the body is long"));
   springs.Filter->SetHandleRadius(std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(HasPart(springs.TryUpdate(), "HandleRadius is not a number"));
   springs.Filter->SetHandleRadius(0.0);
