@@ -344,10 +344,11 @@ void vtkElasticDeformation::Advance(ElasticSimulation& simulation, vtkPointSet* 
   for (double done = 0.0; done < frames; done += 1.0)
   {
     frame.Duration = std::min(longest, std::max(0.0, end - session.Time));
+    frame.IsLast = done + 1.0 == frames;
     frame.Progress = [&](double fraction) { return progress.Report((done + fraction) / frames); };
     simulation.Advance(frame);
     session.HasMoved = true;
-    session.Time = done + 1.0 == frames ? end : session.Time + frame.Duration;
+    session.Time = frame.IsLast ? end : session.Time + frame.Duration;
   }
   this->NumberOfHeldNodes = static_cast<vtkIdType>(frame.Held.size());
 }

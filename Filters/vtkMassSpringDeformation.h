@@ -19,8 +19,8 @@
  * replaced by 0.25, with a warning.
  *
  * @par Inverted tetrahedra: Springs have no force that turns an inverted tetrahedron back. A
- * warning has the number of inverted tetrahedra (GetNumberOfInvertedTetrahedra()), if there were
- * none before.
+ * warning has the number of inverted tetrahedra (GetNumberOfInvertedTetrahedra()) at the end of an
+ * execution, if there were none at the end of the last one.
  *
  * @par Errors:
  * Those of vtkElasticDeformation; a tetrahedron that is not a fifth of a cube of the same size as

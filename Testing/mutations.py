@@ -455,6 +455,8 @@ MUTATIONS = {
                     [("TestMidSideNodes", "*")]),
     "reactions": ("Kernels/FiniteElements/EquilibriumProblem.cxx", "? left - sliding.Project(node, left)",
                   "? sliding.Project(node, left)", ["Cxx.TestTenNodeElements"]),
+    "springs-last-frame": ("Filters/Physics/MassSpringSimulation.cxx", "if (!frame.IsLast)", "if (false)",
+                           ["Cxx.TestElasticDeformation"]),
     "body-unit": ("Filters/Physics/BodyReading.cxx", "radius * settings.UnitLength", "radius",
                   ["Cxx.TestElasticDeformation"]),
     "body-taken": ("Filters/Physics/BodyReading.cxx", "isTaken[node] == 0 && ", "", ["Cxx.TestElasticDeformation"]),

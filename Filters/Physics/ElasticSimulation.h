@@ -29,6 +29,7 @@ public:
   struct Frame
   {
     double Duration = 0.0; // in s
+    bool IsLast = true;    // of the frames of an update: it gives the warnings about its result
     std::vector<HeldNode> Held;
     BodyLoads Loads;
     std::function<bool(double)> Progress; // gets 0 to 1; returns false to abort

@@ -110,14 +110,18 @@ void MassSpringSimulation::Advance(const Frame& frame)
   request.Loads = frame.Loads;
   request.Progress = frame.Progress;
   this->Report = this->Model.Advance(request);
+  if (!frame.IsLast)
+  {
+    return; // springs turn many tetrahedra back in later frames
+  }
   const bool hadInverted =
     std::exchange(this->HasInverted, this->Report.NumberOfInvertedTetrahedra > 0);
   if (!hadInverted && this->HasInverted)
   {
     this->Warnings.push_back(std::to_string(this->Report.NumberOfInvertedTetrahedra) +
-      " tetrahedra are inverted (inside out), and springs can keep them inverted. Reset the body, "
-      "and move handles "
-      "and loads more slowly, or use finite elements.");
+      " tetrahedra are inverted (inside out) at the end of the update, and springs can keep them "
+      "inverted. Start again from rest with smaller displacements of handles and smaller loads, "
+      "move them more slowly, or use finite elements.");
   }
 }
 

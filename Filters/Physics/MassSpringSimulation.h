@@ -32,7 +32,11 @@ public:
   State GetState() override;
   void Return(const ElasticBody& body, const State& state) override;
   void Advance(const Frame& frame) override;
-  void Reset() override { this->Model.Reset(); }
+  void Reset() override
+  {
+    this->Model.Reset();
+    this->HasInverted = false;
+  }
   bool HasBody() const override { return this->Model.GetDeviceMemory() > 0; }
   std::vector<ElementResults> GetElementResults() override
   {
@@ -42,7 +46,7 @@ public:
 
 private:
   MassSpringModel Model;
-  bool HasInverted = false; // whether the last frame had inverted tetrahedra
+  bool HasInverted = false; // whether the last update ended with inverted tetrahedra
   std::string Device;
   std::size_t NumberOfNodes = 0;
   VectorOutput Output;

@@ -300,6 +300,19 @@ TEST(ElasticDeformation, WarningsOfSubclasses)
   EXPECT_TRUE(HasPart(UpdateAndWarn(springs), "Poisson ratio of the body is less than 0.25"));
   springs.Filter->SetPoissonRatio(0.25);
   EXPECT_EQ(UpdateAndWarn(springs), std::string());
+  // A handle that jumps far inverts tetrahedra for some frames, but not in the end.
+  springs.Filter->SetHandleRadius(0.003);
+  springs.Filter->SetHandlesData(
+    MakeHandles({ { glm::dvec3(0.005, 0.005, 0.03), glm::dvec3(0.02, 0.005, 0.03) } }));
+  springs.Filter->SetEndTime(2.0);
+  for (const double time : { springs.Filter->GetFrameTime(), 2.0 })
+  {
+    springs.Filter->Reset();
+    springs.Filter->UpdateTimeStep(time);
+    EXPECT_EQ(springs.Filter->GetNumberOfInvertedTetrahedra() > 0, time < 2.0);
+    EXPECT_EQ(springs.Observer->GetWarning(), time < 2.0);
+    springs.Observer->Clear();
+  }
 
   // By default one execution ends in equilibrium.
   Simulated<vtkFiniteElementDeformation> elements(bar);
