@@ -449,6 +449,8 @@ MUTATIONS = {
     "jacobian-beside": ("Kernels/StaticMapping/VoxelJacobians.cxx",
                         "alongField[axis] = this->GetSlopeBeside(middle, axis, halfStep);",
                         "alongField[axis] = glm::dvec3(0.0);", ["Cxx.TestExtraArrays"]),
+    "voxel-rounding": ("Kernels/ChainMail/ChainMailHandles.cxx", "constexpr double rounding = 1e-6;",
+                       "constexpr double rounding = 0.0;", [RELAXATION]),
     "handle-rounding": ("Filters/Physics/BodyReading.cxx", "constexpr double rounding = 1e-6;",
                         "constexpr double rounding = 0.0;", ["Cxx.TestElasticDeformation"]),
     "face-forces": ("Kernels/Physics/MidSideNodes.cxx", "] += face.Area;", "] += 1.0;",

@@ -82,6 +82,7 @@ ChainMailHandles::ChainMailHandles(const ChainMailBlocks& blocks,
 void ChainMailHandles::Select(const ChainMailBlocks& blocks, const std::array<double, 3>& spacing,
   const ChainMailHandle& handle, std::uint32_t number)
 {
+  constexpr double rounding = 1e-6; // of voxels at the distance of the radius, in voxels
   std::array<double, 3> at;
   std::array<int, 3> nearest;
   Extent box;
@@ -90,19 +91,19 @@ void ChainMailHandles::Select(const ChainMailBlocks& blocks, const std::array<do
     const int last = blocks.GetSize()[axis] - 1;
     at[axis] = handle.RestPosition[axis] - blocks.GetExtent()[2 * axis];
     nearest[axis] = std::clamp(static_cast<int>(std::lround(at[axis])), 0, last);
-    const double radius = handle.Radius / spacing[axis];
+    const double radius = handle.Radius / spacing[axis] + rounding;
     box[2 * axis] = static_cast<int>(std::clamp(std::ceil(at[axis] - radius), 0.0, last + 1.0));
     box[2 * axis + 1] =
       static_cast<int>(std::clamp(std::floor(at[axis] + radius), -1.0, 0.0 + last));
   }
   this->Voxels.push_back({ blocks.GetVoxelIndex(nearest[0], nearest[1], nearest[2]), number });
-  const double limit = handle.Radius * handle.Radius;
+  const double reach = handle.Radius + rounding * *std::min_element(spacing.begin(), spacing.end());
   const auto square = [&](int axis, int index)
   { return (index - at[axis]) * spacing[axis] * (index - at[axis]) * spacing[axis]; };
   ForEachPoint(box,
     [&](int x, int y, int z)
     {
-      if (square(0, x) + square(1, y) + square(2, z) <= limit)
+      if (square(0, x) + square(1, y) + square(2, z) <= reach * reach)
       {
         this->Voxels.push_back({ blocks.GetVoxelIndex(x, y, z), number });
       }

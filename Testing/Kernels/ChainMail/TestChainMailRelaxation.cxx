@@ -385,6 +385,18 @@ TEST(ChainMailSteps, OnlyChangedVoxelsAreWritten)
   EXPECT_FALSE(subject.Step(0).WasReset);
 }
 
+TEST(ChainMailSteps, VoxelsAtTheRadiusAreHeld)
+{
+  ChainMailModel model;
+  model.SetVoxelGrid({ { 0, 16, 0, 16, 0, 16 } }, { { 1.1, 0, 0, 0, 100, 0, 0, 0, 100 } });
+  std::vector<float> output(3 * 17 * 17 * 17);
+  model.SetOutput(output.data());
+  ChainMailRequest request;
+  request.Handles = { MakeHandle({ { 8, 8, 8 } }, { { 1, 0, 0 } }, 3.3) };
+  // Rounded, 3 * 1.1 is more than 3.3.
+  EXPECT_EQ(model.Step(request).Handles.front().NumberOfVoxels, 7);
+}
+
 TEST(ChainMailSteps, OutputIsInWorldCoordinates)
 {
   // A rotation about z: the x axis of the volume points along +y of the world, its y axis along -x.
