@@ -38,7 +38,7 @@ EquilibriumLimits ChooseLimits(const EquilibriumRequest& request)
 
 // Adds the weight of the tetrahedra of held pieces. It is distributed by the shape functions: each
 // corner takes -1/20 of the weight of a straight tetrahedron, and each mid-side node 1/5.
-void AddGravity(const glm::dvec3& gravity, const ElasticBody& body, const BodyComponents& pieces,
+void AddGravity(const glm::dvec3& gravity, const ElasticBody& body, const BodyPieces& pieces,
   const std::vector<bool>& isHeld, const GaussVolumes& volumes, std::vector<glm::dvec3>& loads)
 {
   constexpr std::size_t points = QuadraticTetrahedron::NumberOfGaussPoints;
@@ -49,7 +49,7 @@ void AddGravity(const glm::dvec3& gravity, const ElasticBody& body, const BodyCo
   }
   for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
   {
-    if (!isHeld[static_cast<std::size_t>(pieces.ComponentOfTetrahedron[t])])
+    if (!isHeld[static_cast<std::size_t>(pieces.PieceOfTetrahedron[t])])
     {
       continue; // pieces that are not held bear no load, not even at shared nodes
     }
@@ -78,7 +78,7 @@ double LargestComponent(const glm::dvec3& vector)
 }
 
 EquilibriumProblem MakeProblem(const EquilibriumRequest& request, const ElasticBody& body,
-  const BodyComponents& pieces, const GaussVolumes& volumes, const SlidingNodes& sliding)
+  const BodyPieces& pieces, const GaussVolumes& volumes, const SlidingNodes& sliding)
 {
   CheckLoads(body, request.Loads);
   CheckHeldNodes(body, request.Held);

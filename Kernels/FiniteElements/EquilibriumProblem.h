@@ -2,7 +2,7 @@
 #ifndef DeformVolumeEquilibriumProblem_h
 #define DeformVolumeEquilibriumProblem_h
 
-#include "BodyComponents.h"
+#include "BodyPieces.h"
 #include "ElasticBody.h"
 #include "EquilibriumTypes.h"
 #include "QuadraticTetrahedron.h"
@@ -28,7 +28,7 @@ struct EquilibriumProblem
   std::vector<glm::dvec3> Targets;
   /// The loads on nodes of held pieces, in N; 0 at other nodes.
   std::vector<glm::dvec3> Loads;
-  ComponentSupports Supports;
+  PieceSupports Supports;
   /// The limits of the request, with defaults filled in.
   EquilibriumLimits Limits;
   bool IsInteractive = false;
@@ -39,7 +39,7 @@ using GaussVolumes = std::vector<std::array<double, QuadraticTetrahedron::Number
 
 /// Throws an Error if no piece of the body is held, or if limits, loads or handles are invalid.
 EquilibriumProblem MakeProblem(const EquilibriumRequest& request, const ElasticBody& body,
-  const BodyComponents& pieces, const GaussVolumes& volumes, const SlidingNodes& sliding);
+  const BodyPieces& pieces, const GaussVolumes& volumes, const SlidingNodes& sliding);
 
 /// The largest component of the unbalanced forces on free nodes, and the largest component of
 /// applied forces and reactions. Both in N.

@@ -52,7 +52,7 @@ private:
 
 EquilibriumSolver::EquilibriumSolver(AbortCheck& abortCheck, const ElasticBody& body)
   : Body(body)
-  , Pieces(FindBodyComponents(body, &abortCheck))
+  , Pieces(FindBodyPieces(body, &abortCheck))
   , ActivePieces(static_cast<std::size_t>(Pieces.NumberOfPieces), true)
   , Sliding(body)
   , Elements(abortCheck, body)

@@ -99,7 +99,7 @@ private:
     State& state, EquilibriumReport& report);
 
   ElasticBody Body;
-  BodyComponents Pieces;
+  BodyPieces Pieces;
   // The pieces whose tetrahedra Elements contains: those that are held.
   std::vector<bool> ActivePieces;
   SlidingNodes Sliding;

@@ -73,7 +73,7 @@ struct EquilibriumReport
   double RelativeResidual = 0.0;
   /// The strain energy, in J.
   double StrainEnergy = 0.0;
-  /// The number of pieces of the body (BodyComponents) that are not held (ComponentSupports). Such
+  /// The number of pieces of the body (BodyPieces) that are not held (PieceSupports). Such
   /// frozen pieces bear no loads and exert no forces.
   std::int32_t NumberOfFrozenPieces = 0;
   /// The nodes of a tetrahedron of the first frozen piece, for messages; -1 if no piece is frozen.

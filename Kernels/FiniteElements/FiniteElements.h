@@ -4,7 +4,7 @@
 
 #include "AbortCheck.h"
 #include "BlockMatrix.h"
-#include "BodyComponents.h"
+#include "BodyPieces.h"
 #include "ElementBatches.h"
 #include "EquilibriumTypes.h"
 
@@ -32,9 +32,9 @@ public:
 
   /// See SetActivePieces() in ElementBatches.h.
   void SetActivePieces(
-    const ElasticBody& body, const BodyComponents& pieces, const std::vector<bool>& isActive)
+    const ElasticBody& body, const BodyPieces& pieces, const std::vector<bool>& isActive)
   {
-    deformvolume::SetActivePieces(this->Batches, body, pieces.ComponentOfTetrahedron, isActive);
+    deformvolume::SetActivePieces(this->Batches, body, pieces.PieceOfTetrahedron, isActive);
   }
 
   /// Prepares AssembleTangent() for matrices of this pattern.

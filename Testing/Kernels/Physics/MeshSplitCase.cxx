@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshSplitCase.h"
 
-#include "BodyComponents.h"
+#include "BodyPieces.h"
 #include "DisjointSets.h"
 #include "LatticeBody.h"
 
@@ -139,7 +139,7 @@ std::vector<double> ExpectPieces(const ElasticBody& body, std::size_t count)
 {
   const std::vector<std::int32_t> components = FindFaceComponents(body.Tetrahedra);
   EXPECT_EQ(CountComponents(components), count);
-  EXPECT_EQ(FindBodyComponents(body).NumberOfPieces, static_cast<std::int32_t>(count));
+  EXPECT_EQ(FindBodyPieces(body).NumberOfPieces, static_cast<std::int32_t>(count));
   std::vector<double> volumes(count, 0.0);
   const std::vector<double> all = GetVolumes(body);
   for (std::size_t t = 0; t < all.size(); ++t)

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cuts of a deformation mesh along its faces: the faces that are split.
-#include "BodyComponents.h"
+#include "BodyPieces.h"
 #include "LatticeBody.h"
 #include "MeshSplitCase.h"
 #include "ParallelFor.h"
 
-#include "BodyComponents.h"
 #include <glm/geometric.hpp>
 
 #include <gtest/gtest.h>
@@ -39,7 +38,7 @@ TEST(SplitFaces, NoPieceOnBothSides)
     ExpectSound(body, split);
     EXPECT_GT(split.NumberOfFaces, 0);
     const ElasticBody after = Apply(body, split);
-    const BodyComponents pieces = FindBodyComponents(after);
+    const BodyPieces pieces = FindBodyPieces(after);
     std::vector<int> sides(static_cast<std::size_t>(pieces.NumberOfPieces), 0);
     for (const Tetrahedron& t : after.Tetrahedra)
     {

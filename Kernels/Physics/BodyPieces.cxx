@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BodyComponents.h"
+#include "BodyPieces.h"
 
 #include "AbortCheck.h"
 #include "CountedLists.h"
@@ -23,12 +23,12 @@ namespace deformvolume
 namespace
 {
 
-void FindNodes(const ElasticBody& body, BodyComponents& pieces)
+void FindNodes(const ElasticBody& body, BodyPieces& pieces)
 {
   pieces.PieceOfNode.assign(body.Points.size(), -1);
   for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
   {
-    const std::int32_t here = pieces.ComponentOfTetrahedron[t];
+    const std::int32_t here = pieces.PieceOfTetrahedron[t];
     body.ForNodes(t,
       [&](std::int32_t node)
       {
@@ -51,16 +51,15 @@ void FindNodes(const ElasticBody& body, BodyComponents& pieces)
   std::sort(pieces.SharedByPieces.begin(), pieces.SharedByPieces.end());
 }
 
-void SortTetrahedra(BodyComponents& pieces)
+void SortTetrahedra(BodyPieces& pieces)
 {
   MakeLists(
     static_cast<std::size_t>(pieces.NumberOfPieces),
     [&](const auto& take)
     {
-      for (std::size_t t = 0; t < pieces.ComponentOfTetrahedron.size(); ++t)
+      for (std::size_t t = 0; t < pieces.PieceOfTetrahedron.size(); ++t)
       {
-        take(
-          static_cast<std::size_t>(pieces.ComponentOfTetrahedron[t]), static_cast<std::int32_t>(t));
+        take(static_cast<std::size_t>(pieces.PieceOfTetrahedron[t]), static_cast<std::int32_t>(t));
       }
     },
     pieces.Begins, pieces.Tetrahedra);
@@ -204,7 +203,7 @@ glm::dvec3 RotateBetween(const glm::dvec3& from, const glm::dvec3& to, const glm
 
 } // namespace
 
-BodyComponents FindBodyComponents(const ElasticBody& body, AbortCheck* abortCheck)
+BodyPieces FindBodyPieces(const ElasticBody& body, AbortCheck* abortCheck)
 {
   AbortCheck none(nullptr);
   AbortCheck& given = abortCheck ? *abortCheck : none;
@@ -220,14 +219,14 @@ BodyComponents FindBodyComponents(const ElasticBody& body, AbortCheck* abortChec
           static_cast<std::int32_t>(t), static_cast<std::int32_t>(neighbors.GetNext(face) / 4));
       }
     });
-  BodyComponents pieces;
-  pieces.ComponentOfTetrahedron.resize(body.Tetrahedra.size());
+  BodyPieces pieces;
+  pieces.PieceOfTetrahedron.resize(body.Tetrahedra.size());
   for (std::size_t t = 0; t < body.Tetrahedra.size(); ++t)
   {
     // The root of a set is its lowest tetrahedron.
     const auto root = static_cast<std::size_t>(sets.Find(static_cast<std::int32_t>(t)));
-    pieces.ComponentOfTetrahedron[t] =
-      root == t ? pieces.NumberOfPieces++ : pieces.ComponentOfTetrahedron[root];
+    pieces.PieceOfTetrahedron[t] =
+      root == t ? pieces.NumberOfPieces++ : pieces.PieceOfTetrahedron[root];
   }
   given.Check();
   SortTetrahedra(pieces);
@@ -237,7 +236,7 @@ BodyComponents FindBodyComponents(const ElasticBody& body, AbortCheck* abortChec
   return pieces;
 }
 
-ComponentSupports FindSupports(const ElasticBody& body, const BodyComponents& pieces,
+PieceSupports FindSupports(const ElasticBody& body, const BodyPieces& pieces,
   const std::vector<unsigned char>& isConstrained)
 {
   const auto number = static_cast<std::size_t>(pieces.NumberOfPieces);
@@ -318,7 +317,7 @@ ComponentSupports FindSupports(const ElasticBody& body, const BodyComponents& pi
         });
     }
   };
-  ComponentSupports result;
+  PieceSupports result;
   spread([](const Support& support) { return support.Holds(); }, [](std::int32_t) {});
   result.IsHeld = isTaken;
   spread([](const Support& support) { return support.Nodes[0] >= 0; },
@@ -330,7 +329,7 @@ ComponentSupports FindSupports(const ElasticBody& body, const BodyComponents& pi
   return result;
 }
 
-void MoveFollowing(const ElasticBody& body, const BodyComponents& pieces,
+void MoveFollowing(const ElasticBody& body, const BodyPieces& pieces,
   const std::vector<FollowingPiece>& following, std::vector<unsigned char>& isSettled,
   std::vector<glm::dvec3>& displacements)
 {
@@ -366,7 +365,7 @@ void MoveFollowing(const ElasticBody& body, const BodyComponents& pieces,
   }
 }
 
-std::vector<bool> FindFreePieces(const ComponentSupports& supports)
+std::vector<bool> FindFreePieces(const PieceSupports& supports)
 {
   std::vector<bool> isFree(supports.IsHeld);
   isFree.flip();
@@ -377,7 +376,7 @@ std::vector<bool> FindFreePieces(const ComponentSupports& supports)
   return isFree;
 }
 
-void MakePiecesRigid(const ElasticBody& body, const BodyComponents& pieces,
+void MakePiecesRigid(const ElasticBody& body, const BodyPieces& pieces,
   const std::vector<bool>& isFree, std::vector<glm::dvec3>& displacements)
 {
   DisjointSets<std::int32_t> sets(isFree.size());

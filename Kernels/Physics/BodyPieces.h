@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef DeformVolumeBodyComponents_h
-#define DeformVolumeBodyComponents_h
+#ifndef DeformVolumeBodyPieces_h
+#define DeformVolumeBodyPieces_h
 
 #include "DeformVolumeExport.h"
 #include "ElasticBody.h"
@@ -18,10 +18,10 @@ class AbortCheck;
 
 /// The pieces of a body: tetrahedra that are connected through faces. Two pieces can still share
 /// one node, two nodes (a hinge) or more.
-struct BodyComponents
+struct BodyPieces
 {
   /// The piece of each tetrahedron.
-  std::vector<std::int32_t> ComponentOfTetrahedron;
+  std::vector<std::int32_t> PieceOfTetrahedron;
   /// The tetrahedra, sorted by pieces.
   std::vector<std::int32_t> Tetrahedra;
   /// Index in Tetrahedra of the first tetrahedron of each piece. The last value is the end.
@@ -38,7 +38,7 @@ struct BodyComponents
 };
 /// Finds the pieces of a body. abortCheck: checks for an abort. Callers outside the engine pass
 /// null.
-DEFORMVOLUME_EXPORT BodyComponents FindBodyComponents(
+DEFORMVOLUME_EXPORT BodyPieces FindBodyPieces(
   const ElasticBody& body, AbortCheck* abortCheck = nullptr);
 
 /// A piece that is not held, but has supporting nodes: one node, or several on a line. Supporting
@@ -55,7 +55,7 @@ struct FollowingPiece
 };
 
 /// Which pieces of a body are held, and which follow others.
-struct ComponentSupports
+struct PieceSupports
 {
   /// Whether each piece is held. A piece is held if at least three of its supporting nodes lie on
   /// no common line, or if its supporting nodes and sliding nodes together prevent all rigid-body
@@ -68,23 +68,23 @@ struct ComponentSupports
 };
 /// Finds which pieces cannot move as rigid bodies, and in which order the others follow.
 /// isConstrained: one byte for each node, not 0 if the node is fixed or held by a handle.
-DEFORMVOLUME_EXPORT ComponentSupports FindSupports(const ElasticBody& body,
-  const BodyComponents& pieces, const std::vector<unsigned char>& isConstrained);
+DEFORMVOLUME_EXPORT PieceSupports FindSupports(const ElasticBody& body, const BodyPieces& pieces,
+  const std::vector<unsigned char>& isConstrained);
 
 /// Moves each following piece like a rigid body, so that its supporting nodes keep their
 /// displacements. A piece with two supporting nodes is rotated by the smallest possible angle.
 /// isSettled: nodes that already have their final displacement; the nodes of the moved pieces are
 /// added.
-DEFORMVOLUME_EXPORT void MoveFollowing(const ElasticBody& body, const BodyComponents& pieces,
+DEFORMVOLUME_EXPORT void MoveFollowing(const ElasticBody& body, const BodyPieces& pieces,
   const std::vector<FollowingPiece>& following, std::vector<unsigned char>& isSettled,
   std::vector<glm::dvec3>& displacements);
 
 /// Returns for each piece whether it is free: neither held nor following others.
-DEFORMVOLUME_EXPORT std::vector<bool> FindFreePieces(const ComponentSupports& supports);
+DEFORMVOLUME_EXPORT std::vector<bool> FindFreePieces(const PieceSupports& supports);
 
 /// Gives free pieces their shape at rest again, each at the place that fits its displacements best.
 /// Pieces that share nodes are fitted together. Sliding nodes may leave their planes.
-DEFORMVOLUME_EXPORT void MakePiecesRigid(const ElasticBody& body, const BodyComponents& pieces,
+DEFORMVOLUME_EXPORT void MakePiecesRigid(const ElasticBody& body, const BodyPieces& pieces,
   const std::vector<bool>& isFree, std::vector<glm::dvec3>& displacements);
 
 } // namespace deformvolume
