@@ -10,14 +10,12 @@
 #include "VectorBounds.h"
 #include "WorldBoxes.h"
 
-#include "vtkExecutive.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationDoubleKey.h"
 #include "vtkInformationDoubleVectorKey.h"
-#include "vtkInformationExecutivePortVectorKey.h"
+#include "vtkInformationIntegerKey.h"
 #include "vtkInformationKeyLookup.h"
-#include "vtkMultiTimeStepAlgorithm.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
@@ -27,39 +25,6 @@ using deformvolume::DeformationSource;
 using deformvolume::Error;
 using deformvolume::ImageGeometry;
 using deformvolume::IndexBounds;
-
-namespace
-{
-
-// Whether an algorithm downstream is in the middle of an update that takes several time steps of
-// the output. Then it has begun to execute after the output was made, and has not finished.
-bool IsCollectingTimes(vtkAlgorithm* algorithm, vtkMTimeType made)
-{
-  for (int port = 0; port < algorithm->GetNumberOfOutputPorts(); ++port)
-  {
-    vtkInformation* info = algorithm->GetOutputInformation(port);
-    const int count = vtkExecutive::CONSUMERS()->Length(info);
-    for (int i = 0; i < count; ++i)
-    {
-      vtkAlgorithm* consumer = vtkExecutive::CONSUMERS()->GetExecutives(info)[i]->GetAlgorithm();
-      if (vtkMultiTimeStepAlgorithm::SafeDownCast(consumer) && consumer->GetProgress() < 1.0)
-      {
-        vtkDataObject* data = consumer->GetOutputInformation(0)->Get(vtkDataObject::DATA_OBJECT());
-        if (data && data->GetMTime() > made)
-        {
-          return true;
-        }
-      }
-      if (IsCollectingTimes(consumer, made))
-      {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
-} // namespace
 
 //------------------------------------------------------------------------------
 IndexBounds vtkDeformVolumeFilter::vtkInternals::ReadBounds(const deformvolume::Ranks& ranks,
@@ -327,7 +292,6 @@ deformvolume::Extent vtkDeformVolumeFilter::vtkInternals::GetDeformedExtent(
 void vtkDeformVolumeFilter::vtkInternals::IncludeRequestedTimeInBounds(vtkInformation* output)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  this->ExtentBeforeGrowth.reset();
   const deformvolume::Ranks ranks;
   const bool isNew = !this->InformationFailure && this->EndsWithVolume() &&
     output->Has(Pipeline::UPDATE_TIME_STEP()) &&
@@ -350,6 +314,7 @@ void vtkDeformVolumeFilter::vtkInternals::IncludeRequestedTimeInBounds(vtkInform
     return;
   }
   this->BoundsHaveGrown = true;
+  this->DataRequest = nullptr; // the filter that requests this time may have the first step already
   if (this->Self->BoundsGranularity > 1)
   {
     this->State->LastExtent = after;
@@ -367,11 +332,15 @@ void vtkDeformVolumeFilter::vtkInternals::IncludeRequestedTimeInBounds(vtkInform
 //------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::MarkModifiedIfBoundsHaveGrown()
 {
-  // vtkMultiTimeStepAlgorithm drops the time steps that it has collected if this filter is modified
-  // in between, and then never ends. It gets the new extent in its next update.
-  if (this->BoundsHaveGrown && !IsCollectingTimes(this->Self, this->Self->GetOutput()->GetMTime()))
+  // A filter that takes several time steps for one output sets CONTINUE_EXECUTING in the request of
+  // data after each step but the last, and updates its input again. If this filter is modified in
+  // between, vtkMultiTimeStepAlgorithm drops the time steps that it has collected, and then never
+  // ends. It gets the new extent in its next update.
+  if (this->BoundsHaveGrown && this->DataRequest &&
+    !this->DataRequest->Get(vtkStreamingDemandDrivenPipeline::CONTINUE_EXECUTING()))
   {
     this->BoundsHaveGrown = false;
+    this->ExtentBeforeGrowth.reset();
     this->Self->Modified();
   }
 }

@@ -126,6 +126,7 @@ public:
     vtkInformation* output);
   ///@}
   /// Marks the filter as modified if the bounds have grown, so that consumers get the new extent.
+  /// Does nothing while a consumer collects several time steps.
   void MarkModifiedIfBoundsHaveGrown();
   /// Warns if the whole extent has grown in this update, but a consumer still requests the previous
   /// one.
@@ -274,7 +275,9 @@ public:
   /// Whether the extent of the output was too small, so that the next update has to execute the
   /// filter.
   bool BoundsHaveGrown = false;
-  /// The whole extent before this update, if it has grown in this update.
+  /// The last request for data since the bounds grew. Consumers write to it after the filter.
+  vtkSmartPointer<vtkInformation> DataRequest;
+  /// The whole extent before it grew, until data are requested or consumers get the new extent.
   std::optional<deformvolume::Extent> ExtentBeforeGrowth;
 
 private:

@@ -41,6 +41,10 @@ vtkTypeBool vtkDeformVolumeFilter::ProcessRequest(
   vtkInformation* outInfo = output->GetInformationObject(0);
   vtkTypeBool result = 0;
   bool done = false;
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+  {
+    this->Internals->DataRequest = request;
+  }
   const auto process = [&]
   {
     result = this->Superclass::ProcessRequest(request, input, output);

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests an animation of a deformation mesh with ten time steps in files. The animation builds one static mapping and
 uploads the volume once, and each step has the voxels of a new filter. An Exodus file gives the same voxels as the
-.pvd file, with both of ParaView's readers."""
+.pvd file, with both of ParaView's readers. A series goes on after filters downstream were deleted."""
 
 import os
 
@@ -89,6 +89,21 @@ def check_exodus(volume, series, seen):
         simple.Delete(reader)
 
 
+def check_deleted_filters(volume, series, seen):
+    """Saves data, and deletes a filter downstream, at each step, while the extent grows."""
+    filter_ = simple.DeformVolume(Volume=volume, Deformation=series)
+    for step in list(range(STEPS)) + [0]:
+        filter_.UpdatePipeline(0.5 * step)
+        simple.SaveData(os.path.join(OUTPUT, "TestAnimation.vti"), proxy=filter_, DataMode="Binary")
+        cut = simple.Slice(Input=filter_)
+        cut.UpdatePipeline(0.5 * step)
+        simple.Delete(cut)
+        del cut
+    values = arrays_of(fetch(filter_))["RTData"]
+    check(numpy.array_equal(values, seen[0]), "RTData differs after filters were deleted")
+    simple.Delete(filter_)
+
+
 def play(filter_):
     """Plays the animation, with two updates at each step, because the first one still requests the previous extent.
     After that the extent of the output contains all steps."""
@@ -142,6 +157,7 @@ def main():
     check("Volumes sent: 1\n" in filter_.Summary, filter_.Summary)
 
     check_exodus(volume, series, seen)
+    check_deleted_filters(volume, series, seen)
 
 
 main()

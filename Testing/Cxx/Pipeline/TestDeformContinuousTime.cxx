@@ -130,6 +130,7 @@ TEST(DeformContinuousTime, InterpolatedOutput)
   for (const bool isDirect : { true, false })
   {
     TimedDeformation deformed([](double time) { return 10.0 * time; });
+    vtkNew<vtkImageShiftScale> behind;
     deformed.Lattice->Steps = { 0.0, 1.0, 2.0, 3.0, 4.0 };
     vtkNew<vtkImageShiftScale> between;
     between->SetInputConnection(deformed.Filter->GetOutputPort());
@@ -138,12 +139,15 @@ TEST(DeformContinuousTime, InterpolatedOutput)
       isDirect ? deformed.Filter->GetOutputPort() : between->GetOutputPort());
     vtkNew<vtkTemporalInterpolator> idle; // must not keep the others from the new extent
     idle->SetInputConnection(deformed.Filter->GetOutputPort());
+    behind->SetInputConnection(interpolator->GetOutputPort());
+    vtkAlgorithm* const updated[] = { interpolator, behind };
     int last = 9;
-    for (const int before : { 0, 2, 1 })
+    // The first step of the second update is already there.
+    for (const int before : { 0, 1, 3, 2 })
     {
       for (int repeat = 0; repeat < 2; ++repeat)
       {
-        interpolator->UpdateTimeStep(before + 0.5);
+        updated[isDirect]->UpdateTimeStep(before + 0.5);
         const int needed = 9 + 10 * (before + 1);
         const std::string warning = deformed.TakeWarning();
         EXPECT_EQ(HasPart(warning, "extends beyond the extent"), needed > last && repeat == 0);
@@ -164,6 +168,25 @@ TEST(DeformContinuousTime, InterpolatedOutput)
             0.5 * (get(x - 10 * before) + get(x - 10 * (before + 1))), 1.0);
         }
       }
+    }
+  }
+}
+
+// A consumer that was deleted between two updates.
+TEST(DeformContinuousTime, DeletedConsumer)
+{
+  TimedDeformation deformed([](double time) { return 10.0 * time; });
+  for (int time = 0; time < 4; ++time)
+  {
+    vtkNew<vtkImageShiftScale> view;
+    for (int repeat = 0; repeat < 2; ++repeat)
+    {
+      vtkNew<vtkImageShiftScale> consumer;
+      consumer->SetInputConnection(deformed.Filter->GetOutputPort());
+      view->SetInputConnection(consumer->GetOutputPort());
+      view->UpdateTimeStep(time);
+      EXPECT_EQ(HasPart(deformed.TakeWarning(), "extends beyond"), time > 0 && repeat == 0);
+      EXPECT_EQ(view->GetOutput()->GetExtent()[1], 9 + 10 * std::max(0, time - 1 + repeat));
     }
   }
 }
