@@ -227,7 +227,8 @@ int vtkChainMailDeformation::RequestData(
     [&]
     {
       deformvolume::RefuseBlocks(2, input);
-      const deformvolume::ChainMailReport report = this->Internals->Session.Step(
+      const deformvolume::ChainMailReport& report = this->Internals->Session.Step(
+        { { this, this->GetMTime() }, deformvolume::GetInputStamp(this, 0) },
         vtkImageData::GetData(input[0]), deformvolume::GetWrittenStamp(this, 0),
         vtkPointSet::GetData(input[1]), settings, request);
       this->DeviceInUse = this->Internals->Session.GetDevice();

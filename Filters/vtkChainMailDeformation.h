@@ -8,7 +8,9 @@
  * at its ends. It moves its ends only if a limit would be exceeded. Handles hold voxels and move
  * them; other voxels follow, each by as little as possible. Then relaxation evens out the
  * displacements. An execution is one step: displacements are kept from one execution to the next,
- * so that a drag continues. Call Modified() to continue the relaxation if nothing else has changed.
+ * so that a drag continues. If no property, no position of a handle and no array that is used has
+ * changed, as when another piece or another time is requested, the output of the last step is given
+ * again. Call Modified() to continue the relaxation if nothing else has changed.
  *
  * The output is a displacement field for vtkDeformVolumeFilter (SetDeformationConnection). The time
  * of a step depends on the number of voxels that move, not on the size of the volume.
@@ -232,7 +234,7 @@ public:
 
   ///@{
   /**
-   * Get results of the last execution: the largest violation of a limit by a voxel that moved, as a
+   * Get results of the last step: the largest violation of a limit by a voxel that moved, as a
    * fraction of the spacing, which is 0 if the filter works correctly; the number of rounds over
    * active blocks and relaxation sweeps; the number of voxels that moved; and the numbers of
    * handles that were reduced and released. After an error they are 0.
@@ -246,7 +248,7 @@ public:
 
   ///@{
   /**
-   * Get the extent of the output, in structured indices, in which the last execution may have
+   * Get the extent of the output, in structured indices, in which the last step may have
    * changed displacements; (0, -1, 0, -1, 0, -1) if nothing has changed.
    */
   vtkGetVector6Macro(ChangedExtent, int);

@@ -30,7 +30,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
+#include <tuple>
 #include <vector>
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
@@ -92,6 +94,10 @@ public:
   bool IsToReset = false;
   std::size_t CutsToUndo = 0;
   double CheckedSize = -1.0; // argument of the last CheckSize()
+  // What the body was advanced from last: the properties, the inputs, and the time if one was
+  // requested.
+  using FrameKey = std::tuple<vtkMTimeType, deformvolume::Stamp, std::optional<double>>;
+  FrameKey KeyOfFrame;
   deformvolume::PipelineExecution Execution;
 };
 
@@ -228,10 +234,6 @@ void vtkElasticDeformation::Execute(
   vtkUnstructuredGrid* grid = vtkUnstructuredGrid::GetData(input[0]);
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
   vtkInformation* info = outputVector->GetInformationObject(0);
-  if (!deformvolume::IsFirstPiece(outputVector))
-  {
-    return;
-  }
   vtkInternals& internals = *this->Internals;
   deformvolume::ElasticSession& session = internals.Session;
   deformvolume::BodySettings settings;
@@ -258,7 +260,21 @@ void vtkElasticDeformation::Execute(
   try
   {
     cuts = this->UpdateCuts(vtkPolyData::GetData(input[2]), isToReset);
-    this->Advance(simulation, vtkPointSet::GetData(input[1]), info, progress, isToReset);
+    // If only another piece is requested, the body has been advanced already.
+    vtkInternals::FrameKey key(this->GetMTime(), {}, {});
+    for (int port = 0; port < 3; ++port)
+    {
+      std::get<1>(key).push_back(deformvolume::GetInputStamp(this, port));
+    }
+    if (info->Has(Pipeline::UPDATE_TIME_STEP()))
+    {
+      std::get<2>(key) = info->Get(Pipeline::UPDATE_TIME_STEP());
+    }
+    if (key != internals.KeyOfFrame)
+    {
+      this->Advance(simulation, vtkPointSet::GetData(input[1]), info, progress, isToReset);
+      internals.KeyOfFrame = key;
+    }
   }
   catch (const deformvolume::Aborted&)
   {
@@ -283,7 +299,10 @@ void vtkElasticDeformation::Execute(
   {
     vtkWarningMacro(<< warning);
   }
-
+  if (!deformvolume::IsFirstPiece(outputVector))
+  {
+    return; // other ranks request the whole later, and must have the same body then
+  }
   output->ShallowCopy(session.GetGrid(grid));
   vtkDataArray* displacements = simulation.WriteOutput(1.0 / settings.UnitLength);
   displacements->Modified();

@@ -63,7 +63,8 @@
  * output for another time only if it has a time range. If the time is earlier than the last one,
  * the simulation restarts from rest and advances to the time with the current handles and loads.
  * Handles move to their final positions in the first frame. The subclasses describe updates without
- * a time. The output has the time range from 0 to EndTime, unless the inputs have times.
+ * a time. A request for another piece does not advance the simulation again. The output has the
+ * time range from 0 to EndTime, unless the inputs have times.
  *
  * @par Changes:
  * If the points or cells of the rest mesh or LengthUnit change, the simulation restarts from rest,

@@ -10,12 +10,17 @@
 
 #include "vtkArrayChanges.h"
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
 #include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationDoubleKey.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 namespace deformvolume
 {
@@ -37,13 +42,6 @@ vtkDataArray* FindVolumeArray(vtkImageData* volume, const char* name)
 {
   return FindShapedArray(
     volume->GetPointData(), name, 1, volume->GetNumberOfPoints(), "point array", "the volume");
-}
-
-std::vector<ChainMailHandle> ReadHandles(
-  vtkPointSet* handles, const ImageGeometry& geometry, double radius)
-{
-  const HandlePositions positions = ReadHandlePositions(handles, "volume");
-  return MakeHandles(geometry, positions.Rest, positions.Now, radius);
 }
 
 // Reads the masks without the tetrahedra that a smooth cut crosses, which must not link voxels.
@@ -156,8 +154,9 @@ void ChainMailSession::MakeOutput(vtkIdType voxels)
   log->SetArray(this->Output.GetArray());
 }
 
-ChainMailReport ChainMailSession::Step(vtkImageData* volume, const Stamp::value_type& written,
-  vtkPointSet* handles, const ChainMailSettings& settings, ChainMailRequest request)
+const ChainMailReport& ChainMailSession::Step(const Stamp& source, vtkImageData* volume,
+  const Stamp::value_type& written, vtkPointSet* handles, const ChainMailSettings& settings,
+  ChainMailRequest request)
 {
   // Check all inputs before anything is changed.
   const ImageGeometry geometry = GetGeometry(volume);
@@ -167,13 +166,27 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, const Stamp::value_
   vtkDataArray* pins = FindVolumeArray(volume, PINNED);
   const bool isNew = !this->HasVolume || this->Geometry != geometry;
   Stamp maskStamp = GetMasksStamp(volume);
+  const bool usesArrays = materialArray || pins ||
+    std::any_of(maskStamp.begin(), maskStamp.end(), [](const auto& one) { return one.first; });
+  std::optional<double> time;
+  if (usesArrays && volume->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
+  {
+    time = volume->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP());
+  }
+  const HandlePositions positions = ReadHandlePositions(handles, "volume");
+  StepKey stepKey(source, time, positions.Rest, positions.Now);
+  if (!isNew && stepKey == this->KeyOfStep)
+  {
+    this->Output.Restore();
+    return this->Report;
+  }
   maskStamp.push_back(written);
   std::optional<VolumeMasks> masks;
   if (isNew || maskStamp != this->StampOfMasks)
   {
     masks = ReadLinkMasks(volume);
   }
-  request.Handles = ReadHandles(handles, geometry, settings.HandleRadius);
+  request.Handles = MakeHandles(geometry, positions.Rest, positions.Now, settings.HandleRadius);
   std::vector<double> numbers{ 1.0 * settings.DefaultMaterial };
   std::vector<ChainMailMaterial> table;
   for (std::size_t i = 0; i < settings.Table.Exists.size(); ++i)
@@ -251,10 +264,11 @@ ChainMailReport ChainMailSession::Step(vtkImageData* volume, const Stamp::value_
       this->Model.Restore(*this->ToRestore);
     }
     this->ToRestore = nullptr;
-    const ChainMailReport report = this->Model.Step(request);
-    this->LogChanges(report);
+    this->Report = this->Model.Step(request);
+    this->LogChanges(this->Report);
     this->Output.Restore();
-    return report;
+    this->KeyOfStep = std::move(stepKey);
+    return this->Report;
   }
   catch (const Error&)
   {

@@ -8,10 +8,14 @@
 #include "Stamp.h"
 #include "VectorOutput.h"
 
+#include <glm/vec3.hpp>
+
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -37,11 +41,14 @@ struct ChainMailSettings
 class ChainMailSession
 {
 public:
-  /// Executes a step. written: stamp of the volume, see GetWrittenStamp(). handles: null if there
-  /// are none. Throws Error and Aborted. The displacements do not change then, unless the device
-  /// has failed.
-  ChainMailReport Step(vtkImageData* volume, const Stamp::value_type& written, vtkPointSet* handles,
-    const ChainMailSettings& settings, ChainMailRequest request);
+  /// Executes a step, unless neither source nor the data that are used have changed since the last
+  /// one, as when another piece is requested. source: stamps of the settings and of the pipeline
+  /// upstream of the volume. written: stamp of the volume, see GetWrittenStamp(). handles: null if
+  /// there are none. Returns the report of the last step. Throws Error and Aborted. The
+  /// displacements do not change then, unless the device has failed.
+  const ChainMailReport& Step(const Stamp& source, vtkImageData* volume,
+    const Stamp::value_type& written, vtkPointSet* handles, const ChainMailSettings& settings,
+    ChainMailRequest request);
 
   /// Sets the geometry and the displacements of the last step in an image.
   void GiveOutput(vtkImageData* output) const;
@@ -70,6 +77,11 @@ public:
 private:
   /// Identifies the array and the settings that the materials were read from.
   using MaterialsKey = std::pair<Stamp, std::vector<double>>;
+  /// What a step was made from, in addition to Geometry: the source, the time of the arrays of the
+  /// volume if any are used, and the handles. Stamps of arrays would also differ if the source of
+  /// the volume has made a piece in between.
+  using StepKey =
+    std::tuple<Stamp, std::optional<double>, std::vector<glm::dvec3>, std::vector<glm::dvec3>>;
 
   void SetVolume(const ImageGeometry& geometry, const ChainMailSettings& settings);
   void Forget();
@@ -91,6 +103,8 @@ private:
   MaterialsKey KeyOfMaterials;
   Stamp StampOfMasks;
   Stamp StampOfPins;
+  StepKey KeyOfStep;
+  ChainMailReport Report;
   VectorOutput Output;
 };
 

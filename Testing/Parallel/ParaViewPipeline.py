@@ -34,6 +34,7 @@ carved.Body.Center, carved.Body.Radius = [9, 7, -5], 8
 simple.SaveData(prefix + "-edited.pvti", proxy=carved, DataMode="Binary")
 handle = DeformationHandle(RestPosition=[4, -6, 2], Position=[13, 2, 8])
 drag = ChainMailDeformation(Volume=carved, Handles=handle, RelaxationSweeps=3)
+drag.UpdatePipeline()  # ranks request pieces here, but the whole below: together this is one step
 dragged = DeformVolume(Volume=carved, Deformation=drag)
 simple.SaveData(prefix + "-dragged.pvti", proxy=dragged, DataMode="Binary")
 

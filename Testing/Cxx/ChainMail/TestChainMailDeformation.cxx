@@ -5,6 +5,8 @@
 #include "ChainMailTesting.h"
 #include "Extent.h"
 
+#include "../../Sources.h"
+
 #include <vtkDataObject.h>
 #include <vtkDataSetAttributes.h>
 #include <vtkInformation.h>
@@ -18,6 +20,7 @@
 #include <glm/glm.hpp>
 
 #include <algorithm>
+#include <functional>
 
 using namespace chainMailTesting;
 using namespace filterTesting;
@@ -156,6 +159,42 @@ TEST(ChainMailDeformation, Kept)
   dragged.Filter->SetInputData(larger);
   EXPECT_NE(dragged.Update(), nullptr);
   EXPECT_EQ(dragged.Filter->GetOutput()->GetNumberOfPoints(), larger->GetNumberOfPoints());
+}
+
+// Another piece, or another time at which handles have the same positions, is no other step.
+TEST(ChainMailDeformation, SameInputs)
+{
+  const auto volume = MakeVolume({ { 0, 20, 0, 20, 0, 20 } });
+  vtkNew<TimedMesh> handles;
+  handles->LastTime = 2.0;
+  handles->GetMesh = [](double time)
+  {
+    const glm::dvec3 rest(8, 12, 12);
+    const auto points = MakeHandles({ { rest, rest + glm::dvec3(time < 2.0 ? 2 : 3, 0, 0) } });
+    auto mesh = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    mesh->SetPoints(points->GetPoints());
+    mesh->GetPointData()->ShallowCopy(points->GetPointData());
+    return mesh;
+  };
+  Dragged dragged(volume);
+  dragged.Filter->SetHandlesConnection(handles->GetOutputPort());
+  dragged.Filter->SetRelaxationSweeps(1);
+  dragged.Filter->UpdateTimeStep(0.0);
+  const auto first = Copy(dragged.GetArray());
+  const vtkIdType moved = dragged.Filter->GetNumberOfMovedVoxels();
+  EXPECT_GT(moved, 0);
+  const std::function<void()> updates[] = { [&] { dragged.Filter->UpdatePiece(0, 2, 0); },
+    [&] { dragged.Filter->UpdatePiece(1, 2, 0); }, [&] { dragged.Filter->UpdateTimeStep(1.0); } };
+  for (const auto& update : updates)
+  {
+    update();
+    EXPECT_TRUE(HaveEqualBits(dragged.GetFloats(), first));
+    EXPECT_EQ(dragged.Filter->GetNumberOfMovedVoxels(), moved);
+  }
+  dragged.Filter->Modified();
+  EXPECT_FALSE(HaveEqualBits(dragged.Update(), first));
+  dragged.Filter->UpdateTimeStep(2.0);
+  EXPECT_EQ(GetTuple(dragged.GetFloats(), GetId(volume, 8, 12, 12)), glm::dvec3(3, 0, 0));
 }
 
 // A column of stiff voxels moves like a rigid body.

@@ -466,6 +466,8 @@ TEST(ElasticDeformation, Times)
   EXPECT_EQ(free.TryUpdate(), "");
   EXPECT_EQ(free.Filter->GetTime(), 0.05);
   free.Filter->Update();
+  free.Filter->UpdatePiece(1, 2, 0);
+  free.Filter->UpdatePiece(0, 2, 0);
   EXPECT_EQ(free.Filter->GetTime(), 0.05); // nothing has changed
   EXPECT_EQ(free.TryUpdate(), "");
   EXPECT_EQ(free.Filter->GetTime(), 0.1);
