@@ -461,7 +461,7 @@ int vtkDeformGeometryFilter::FillInputPortInformation(int port, vtkInformation* 
     info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
     return 1;
   }
-  deformvolume::FillDeformationPort(port == 2, info);
+  deformvolume::FillDeformationPort(info);
   return 1;
 }
 

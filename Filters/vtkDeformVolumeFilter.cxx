@@ -271,7 +271,7 @@ int vtkDeformVolumeFilter::FillInputPortInformation(int port, vtkInformation* in
 {
   if (port == 1 || port == 2)
   {
-    deformvolume::FillDeformationPort(port == 2, info);
+    deformvolume::FillDeformationPort(info);
     return 1;
   }
   if (port == 3)

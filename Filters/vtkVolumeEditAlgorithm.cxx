@@ -218,7 +218,7 @@ int vtkVolumeEditAlgorithm::FillInputPortInformation(int port, vtkInformation* i
       deformvolume::AcceptBlocks(info);
       break;
     default:
-      deformvolume::FillDeformationPort(port == 3, info);
+      deformvolume::FillDeformationPort(info);
       break;
   }
   return 1;

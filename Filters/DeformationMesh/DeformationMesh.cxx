@@ -4,8 +4,10 @@
 #include "Error.h"
 #include "VectorArray.h"
 
+#include "vtkCellData.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
+#include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
@@ -44,15 +46,30 @@ std::pair<std::size_t, vtkIdType> FindNode(const MeshParts& parts, vtkIdType nod
     vtkDataSetAttributes::GhostArrayName() + ", so that these cells are left out.");
 }
 
-std::string ListPointArrays(vtkPointData* pointData)
+// Lists the arrays with a number of components, or all of them; "" if there are none.
+std::string ListArrays(vtkDataSetAttributes* data, const char* title, int components = 0)
 {
   std::string names;
-  for (int i = 0; i < pointData->GetNumberOfArrays(); ++i)
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
-    const char* name = pointData->GetArrayName(i);
-    names += (i == 0 ? "Its point arrays: \"" : ", \"") + std::string(name ? name : "") + "\"";
+    const char* name = data->GetArrayName(i);
+    if (components == 0 || data->GetAbstractArray(i)->GetNumberOfComponents() == components)
+    {
+      names += (names.empty() ? title : ", ") + ('"' + std::string(name ? name : "") + '"');
+    }
   }
-  return names.empty() ? "It has no point arrays. " : names + ". ";
+  return names.empty() ? names : names + ". ";
+}
+
+std::string ListArrays(vtkDataSet* dataSet)
+{
+  const std::string points = ListArrays(dataSet->GetPointData(), "Its point arrays: ");
+  const std::string cells = ListArrays(dataSet->GetCellData(), "Cell arrays are not used: ", 3);
+  return (points.empty() ? "It has no point arrays. " : points) + cells +
+    (cells.empty()
+        ? ""
+        : "To use one, convert it with vtkCellDataToPointData, in ParaView with Cell Data "
+          "to Point Data. ");
 }
 
 void MarkMissing(vtkIdType first, vtkIdType count, const VectorTaker& take, NodeFaults& faults)
@@ -105,7 +122,9 @@ void CheckParts(const MeshParts& parts, vtkDataObject* object, const std::string
   }
   if (parts.empty())
   {
-    throw Error("There is no " + name + connect);
+    throw Error(
+      (object ? "The " + name + " is a " + object->GetClassName() : "There is no " + name) +
+      connect);
   }
   if (GetNumberOfNodes(parts) == 0)
   {
@@ -172,7 +191,7 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
       : ".";
     std::string what = name;
     what.front() = static_cast<char>(std::toupper(what.front()));
-    throw Error(what + " has no " + wanted + ". " + ListPointArrays(dataSet->GetPointData()) +
+    throw Error(what + " has no " + wanted + ". " + ListArrays(dataSet) +
       "Choose the displacements with SetInputArrayToProcess()" + alternative);
   }
   if (array->GetNumberOfComponents() != 3)

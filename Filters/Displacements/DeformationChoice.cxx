@@ -88,20 +88,13 @@ OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance)
   return MakeKeptVoxels(fadeDistance);
 }
 
-void FillDeformationPort(bool isRest, vtkInformation* info)
+void FillDeformationPort(vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  // vtkCompositeDataSet has to be first. Otherwise the executive would iterate over the leaves.
+  // vtkCompositeDataSet has to be first. Otherwise the executive would iterate over the leaves. Its
+  // message names the first type only: CheckParts() refuses surfaces.
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
-  for (const char* grid : { "vtkUnstructuredGrid", "vtkStructuredGrid", "vtkExplicitStructuredGrid",
-         "vtkRectilinearGrid" })
-  {
-    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), grid);
-  }
-  if (!isRest)
-  {
-    info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
-  }
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
 }
 
 void ThrowRestWithoutDeformation(int restPort, int deformationPort)

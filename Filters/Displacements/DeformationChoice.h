@@ -38,8 +38,8 @@ void CheckDisplacementScale(double scale);
 /// OutsideMode is KEEP and FadeDistance is negative or not finite.
 OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance);
 
-/// Sets the data types of the port for the deformation, or of the port for the rest configuration.
-void FillDeformationPort(bool isRest, vtkInformation* info);
+/// Sets the data types of the ports for the deformation and for the rest configuration.
+void FillDeformationPort(vtkInformation* info);
 
 /// Throws the Error of filters with a rest configuration but no deformation. The numbers are those
 /// of the input ports.

@@ -19,6 +19,7 @@
 #include <vtkMultiBlockDataSet.h>
 #include <vtkPartitionedDataSet.h>
 #include <vtkPartitionedDataSetCollection.h>
+#include <vtkPolyData.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkSphere.h>
 #include <vtkStructuredGrid.h>
@@ -266,6 +267,23 @@ TEST(DeformMeshes, ReplacedValues)
     tested.Filter->Modified();
     EXPECT_TRUE(AreEqual(expected.Update(), tested.Update()));
   }
+}
+
+TEST(DeformMeshes, WrongData)
+{
+  const auto volume = MakeVolume();
+  Deformed surface(volume, vtkNew<vtkPolyData>());
+  surface.VerifyFailure("The deformation mesh is a vtkPolyData. Connect a vtkUnstructuredGrid");
+  const Grid mesh = Grid::New();
+  mesh->DeepCopy(MakeBentMesh(volume));
+  const auto array = MakeArray<vtkDoubleArray>(name, mesh->GetNumberOfCells(), 3);
+  array->Fill(1.0);
+  mesh->GetCellData()->AddArray(array);
+  mesh->GetPointData()->Initialize();
+  Deformed(volume, mesh)
+    .VerifyFailure(
+      "It has no point arrays. Cell arrays are not used: \"displacement\". To use one, "
+      "convert it with vtkCellDataToPointData");
 }
 
 TEST(DeformMeshes, Blocks)
