@@ -145,6 +145,11 @@ def check_words(proxy):
     for prop in properties_of(proxy):
         text = prop.find("Documentation")
         label = f"{name}.{prop.get('name')}"
+        if prop.get("repeat_command") and prop.tag != "StringVectorProperty":
+            columns = int(prop.get("number_of_elements_per_command"))
+            labels = prop.findall("Hints/ShowComponentLabels/ComponentLabel")
+            check(prop.find("Hints/ShowLabel") is not None, f"{label}: the table has no title")
+            check(len(labels) == columns or columns == 1, f"{label}: the table has no names of columns")
         check(text is not None and text.text.strip(), f"{label}: no documentation")
         for decorator in prop.iter("PropertyWidgetDecorator"):
             other = decorator.get("property")
