@@ -225,11 +225,8 @@ void vtkDeformVolumeFilter::vtkInternals::SendVolume(
   std::vector<unsigned char> blanked;
   if (!isDefined)
   {
-    blanked = deformation.FindUndefinedVoxels(inputs.Mapped.Part, outside);
-    for (std::size_t i = 0; i < blanked.size() && masks.Blanked; ++i)
-    {
-      blanked[i] |= (masks.Blanked[i] & masks.BlankedBits) != 0 ? 1 : 0;
-    }
+    blanked = deformation.FindUndefinedVoxels(
+      inputs.Mapped.Part, outside, masks.Blanked, masks.BlankedBits);
     masks.Blanked = blanked.data();
     masks.BlankedBits = 1;
   }

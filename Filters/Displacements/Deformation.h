@@ -55,22 +55,13 @@ public:
   }
   ///@}
 
-  ///@{
-  /// The voxels of a part of the volume whose displacements depend on undefined points of a forward
-  /// field, one byte each. GetUndefinedVersion() differs for fields with other undefined points,
-  /// and is 0 for all other deformations. Vectors of undefined points of an inverse field are NaN
-  /// instead.
-  std::vector<unsigned char> FindUndefinedVoxels(
-    const Extent& part, const OutsideVoxels& outside) const;
-  /// The undefined points of a field, one byte each; empty if there are none.
-  const std::vector<unsigned char>& GetUndefinedPoints() const { return this->UndefinedPoints; }
+  /// Differs for forward fields with other undefined points, and is 0 for all other deformations.
   std::uint64_t GetUndefinedVersion() const
   {
     return this->UndefinedPoints.empty() || !this->Field || this->IsInverseField()
       ? 0
       : this->UndefinedVersion;
   }
-  ///@}
 
   /// Reads vectors that are on a device. The displacements and the field are valid only after this
   /// call if GetDeviceVectors() is not null.
@@ -102,7 +93,6 @@ private:
   void CheckFaults(const MeshParts& shape, const DeformationSource& source) const;
 
   RestMesh Mesh;
-  std::vector<unsigned char> UndefinedPoints; // of the field; empty: all are defined
   std::uint64_t UndefinedVersion = 0;
   DisplacementField FieldInPlace; // no Owner: there is none
   IndexBounds FieldBounds;

@@ -7,7 +7,6 @@
 #include "FieldGeometry.h"
 #include "FieldReading.h"
 #include "MeshStamp.h"
-#include "ParallelFor.h"
 #include "PipelineGeometry.h"
 #include "VectorArray.h"
 #include "VectorConversion.h"
@@ -18,10 +17,6 @@
 #include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 namespace deformvolume
@@ -114,12 +109,9 @@ void Deformation::ReadField(vtkImageData* image, const DeformationSource& source
     ++this->VectorsVersion;
     this->ConvertField(array, source);
   }
-  for (std::size_t i = 0; i < this->UndefinedPoints.size() && source.FieldIsInverse; ++i)
+  if (source.FieldIsInverse)
   {
-    if (this->UndefinedPoints[i])
-    {
-      std::fill_n(&this->Vectors[3 * i], 3, std::numeric_limits<float>::quiet_NaN());
-    }
+    this->EraseUndefinedVectors();
   }
   this->RememberVectors(stamp, source, true);
 }
@@ -138,68 +130,6 @@ void Deformation::ConvertField(vtkDataArray* array, const DeformationSource& sou
       }
     },
     source);
-}
-
-std::vector<unsigned char> Deformation::FindUndefinedVoxels(
-  const Extent& part, const OutsideVoxels& outside) const
-{
-  const DisplacementField field = this->GetField(outside);
-  // Weights below this are rounding errors of positions.
-  constexpr double tolerance = 1e-5;
-  const auto width = static_cast<std::size_t>(GetSize(part, 0));
-  const auto height = static_cast<std::size_t>(GetSize(part, 1));
-  std::vector<unsigned char> undefined(static_cast<std::size_t>(GetNumberOfPoints(part)), 0);
-  const auto& m = this->IndexToField;
-  const auto isUndefined = [&](int x, int y, int z)
-  {
-    std::array<int, 3> low;
-    std::array<int, 3> high;
-    glm::dvec3 position;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const int last = this->FieldDimensions[axis] - 1;
-      double at = m[4 * axis] * x + m[4 * axis + 1] * y + m[4 * axis + 2] * z + m[4 * axis + 3];
-      position[axis] = at;
-      if (!field.Extrapolate && (at < -tolerance || at > last + tolerance))
-      {
-        return false; // the voxel is outside the field
-      }
-      at = std::min(std::max(at, 0.0), static_cast<double>(last));
-      low[axis] = static_cast<int>(at + tolerance);
-      high[axis] = std::min(last, at - low[axis] > tolerance ? low[axis] + 1 : low[axis]);
-    }
-    if (IsFading(field) && GetWeightBeyond(field, position, tolerance) == 0.0)
-    {
-      return false; // the voxel stays where it is
-    }
-    for (int corner = 0; corner < 8; ++corner)
-    {
-      std::size_t point = 0;
-      for (int axis = 2; axis >= 0; --axis)
-      {
-        point = point * static_cast<std::size_t>(this->FieldDimensions[axis]) +
-          static_cast<std::size_t>((corner >> axis & 1) != 0 ? high[axis] : low[axis]);
-      }
-      if (this->UndefinedPoints[point])
-      {
-        return true;
-      }
-    }
-    return false;
-  };
-  ParallelForItems(part[5] - part[4] + 1, 1,
-    [&](int layer)
-    {
-      std::size_t voxel = static_cast<std::size_t>(layer) * width * height;
-      for (int y = part[2]; y <= part[3]; ++y)
-      {
-        for (int x = part[0]; x <= part[1]; ++x)
-        {
-          undefined[voxel++] = isUndefined(x, y, part[4] + layer) ? 1 : 0;
-        }
-      }
-    });
-  return undefined;
 }
 
 bool Deformation::UseFieldInPlace(vtkDataArray* array, const DeformationSource& source)

@@ -350,7 +350,7 @@ std::int32_t dv_set_field(dv_deformer* deformer, const dv_field* given)
       world.SetField(grid,
         MakeView(
           field.vectors, field.type, GetNumberOfPoints(grid.PointExtent), "vectors of the field"),
-        field.inverse != 0);
+        field.inverse != 0, field.undefined);
     });
 }
 

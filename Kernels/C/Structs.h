@@ -28,6 +28,8 @@ template <typename T>
 inline constexpr std::size_t FirstSize = sizeof(T);
 template <>
 inline constexpr std::size_t FirstSize<dv_mesh> = offsetof(dv_mesh, degrees);
+template <>
+inline constexpr std::size_t FirstSize<dv_field> = offsetof(dv_field, undefined);
 
 /// Throws an Error if a structure is smaller than in the first version of the interface.
 template <typename T>

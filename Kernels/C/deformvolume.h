@@ -312,6 +312,10 @@ extern "C"
     /** 0: each vector leads from a point of the volume to its deformed position. Not 0: each vector
      * leads from a point of the output to the point of the volume that appears there. */
     int32_t inverse;
+    /** Null, or one byte per point: not 0 if the displacement of the point is unknown, for example
+     * where digital volume correlation found no match. Its vector is not read. Voxels whose
+     * interpolation would use such a point are not covered. Borrowed. */
+    const uint8_t* undefined;
   } dv_field;
 
   /** Sets the displacement field, which replaces the previous mesh or field. */

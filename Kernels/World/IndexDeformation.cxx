@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace deformvolume
 {
@@ -52,6 +53,69 @@ DisplacementField IndexDeformation::GetFieldShape(const OutsideVoxels& outside) 
   return field;
 }
 
+std::vector<unsigned char> IndexDeformation::FindUndefinedVoxels(const Extent& part,
+  const OutsideVoxels& outside, const unsigned char* blanked, unsigned char blankedBits) const
+{
+  const DisplacementField field = this->GetFieldShape(outside);
+  // Weights below this are rounding errors of positions.
+  constexpr double tolerance = 1e-5;
+  const auto width = static_cast<std::size_t>(GetSize(part, 0));
+  const auto height = static_cast<std::size_t>(GetSize(part, 1));
+  std::vector<unsigned char> undefined(static_cast<std::size_t>(GetNumberOfPoints(part)), 0);
+  const auto& m = this->IndexToField;
+  const auto isUndefined = [&](int x, int y, int z)
+  {
+    std::array<int, 3> low;
+    std::array<int, 3> high;
+    glm::dvec3 position;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int last = this->FieldDimensions[axis] - 1;
+      double at = m[4 * axis] * x + m[4 * axis + 1] * y + m[4 * axis + 2] * z + m[4 * axis + 3];
+      position[axis] = at;
+      if (!field.Extrapolate && (at < -tolerance || at > last + tolerance))
+      {
+        return false; // the voxel is outside the field
+      }
+      at = std::min(std::max(at, 0.0), static_cast<double>(last));
+      low[axis] = static_cast<int>(at + tolerance);
+      high[axis] = std::min(last, at - low[axis] > tolerance ? low[axis] + 1 : low[axis]);
+    }
+    if (IsFading(field) && GetWeightBeyond(field, position, tolerance) == 0.0)
+    {
+      return false; // the voxel stays where it is
+    }
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      std::size_t point = 0;
+      for (int axis = 2; axis >= 0; --axis)
+      {
+        point = point * static_cast<std::size_t>(this->FieldDimensions[axis]) +
+          static_cast<std::size_t>((corner >> axis & 1) != 0 ? high[axis] : low[axis]);
+      }
+      if (this->UndefinedPoints[point])
+      {
+        return true;
+      }
+    }
+    return false;
+  };
+  ParallelForItems(part[5] - part[4] + 1, 1,
+    [&](int layer)
+    {
+      std::size_t voxel = static_cast<std::size_t>(layer) * width * height;
+      for (int y = part[2]; y <= part[3]; ++y)
+      {
+        for (int x = part[0]; x <= part[1]; ++x)
+        {
+          const bool isBlanked = blanked && (blanked[voxel] & blankedBits) != 0;
+          undefined[voxel++] = isBlanked || isUndefined(x, y, part[4] + layer) ? 1 : 0;
+        }
+      }
+    });
+  return undefined;
+}
+
 PointRanges IndexDeformation::GetChanges(std::uint64_t version) const
 {
   PointRanges changes;
@@ -70,6 +134,17 @@ PointRanges IndexDeformation::GetChanges(std::uint64_t version) const
     changes.back()[1] = std::min(begin + PointsPerBlock, count);
   }
   return changes;
+}
+
+void IndexDeformation::EraseUndefinedVectors()
+{
+  for (std::size_t i = 0; i < this->UndefinedPoints.size(); ++i)
+  {
+    if (this->UndefinedPoints[i] != 0)
+    {
+      std::fill_n(&this->Vectors[3 * i], 3, std::numeric_limits<float>::quiet_NaN());
+    }
+  }
 }
 
 void IndexDeformation::ResizeVectors(std::size_t count, std::size_t blocks)

@@ -59,6 +59,17 @@ public:
   ///@}
 
   ///@{
+  /// The undefined points of a field, one byte each; empty if there are none. Their vectors are 0
+  /// in a forward field, and NaN in an inverse field.
+  const std::vector<unsigned char>& GetUndefinedPoints() const { return this->UndefinedPoints; }
+  /// Returns a mask of the voxels of a part of the volume, one byte each: 1 if the displacement
+  /// depends on undefined points of a forward field, or if the voxel is blanked. blanked: the
+  /// blanked voxels; null: there are none. blankedBits: the bits of its values that blank a voxel.
+  std::vector<unsigned char> FindUndefinedVoxels(const Extent& part, const OutsideVoxels& outside,
+    const unsigned char* blanked, unsigned char blankedBits) const;
+  ///@}
+
+  ///@{
   /// The vectors that a device can read without a copy, and the matrix that converts them to
   /// displacements. Null: there are none.
   const std::shared_ptr<DeviceVectors>& GetDeviceVectors() const { return this->OnDevice; }
@@ -81,9 +92,13 @@ protected:
   void SetDisplacements(std::size_t count, const VectorSource& read,
     const glm::dmat3& toDisplacement, const DerivedNodes* derived = nullptr);
 
+  /// Sets the vectors of undefined points to NaN.
+  void EraseUndefinedVectors();
+
   bool Field = false;
   bool Inverse = false;
-  std::vector<float> Vectors;   // in output voxels
+  std::vector<float> Vectors; // in output voxels
+  std::vector<unsigned char> UndefinedPoints;
   bool VectorsAreWhole = false; // false: the last reading failed
   NodeFaults Faults;            // of the vectors of a mesh
   std::array<int, 3> FieldDimensions{ { 0, 0, 0 } };

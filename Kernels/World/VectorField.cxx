@@ -8,6 +8,7 @@
 
 #include <glm/common.hpp>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 
@@ -25,7 +26,9 @@ void CheckFinite(std::size_t notFinite, std::size_t count)
   if (notFinite < count)
   {
     throw Error("Vector " + std::to_string(notFinite) +
-      " of the displacement field is not finite. Remove NaN and infinity from it.");
+      " of the displacement field is not finite. Remove NaN and infinity from it, or mark its "
+      "point "
+      "as undefined.");
   }
 }
 
@@ -50,13 +53,20 @@ void VectorField::Replace(const ImageGeometry& grid, const VectorView& vectors, 
   this->FieldSpacing = glm::abs(grid.Spacing);
   this->WorldVectors = vectors;
   this->Inverse = isInverse;
+  this->Undefined = nullptr;
+  this->UndefinedPoints.clear();
   this->Shared = shared;
   this->IsOld = true;
 }
 
-void VectorField::Set(const ImageGeometry& grid, const VectorView& vectors, bool isInverse)
+void VectorField::Set(const ImageGeometry& grid, const VectorView& vectors, bool isInverse,
+  const unsigned char* undefined)
 {
   this->Replace(grid, vectors, isInverse, nullptr);
+  if (undefined && std::any_of(undefined, undefined + vectors.Count, [](int one) { return one; }))
+  {
+    this->Undefined = undefined;
+  }
 }
 
 void VectorField::Set(const ImageGeometry& grid, const std::shared_ptr<DeviceVectors>& vectors)
@@ -122,6 +132,11 @@ void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput
     taken = this->TakeVoxels(volume.PointExtent);
   }
   const std::size_t count = taken.empty() ? this->WorldVectors.Count : taken.size();
+  this->UndefinedPoints.resize(this->Undefined ? count : 0);
+  for (std::size_t i = 0; i < this->UndefinedPoints.size(); ++i)
+  {
+    this->UndefinedPoints[i] = this->Undefined[taken.empty() ? i : taken[i]];
+  }
   this->Faults.Reset();
   this->SetDisplacements(
     count,
@@ -135,7 +150,8 @@ void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput
           for (std::size_t i = begin; i < end; ++i)
           {
             const std::size_t point = taken.empty() ? i : taken[i];
-            vectors[i - begin] = this->WorldVectors.Get(point);
+            vectors[i - begin] =
+              this->IsUndefined(point) ? glm::dvec3(0.0) : this->WorldVectors.Get(point);
             if (!IsFinite(vectors[i - begin]))
             {
               Lower(notFinite, point);
@@ -151,6 +167,10 @@ void VectorField::Convert(const ImageGeometry& volume, const OutputMap& toOutput
       }
     },
     GetToDisplacement(volume, toOutput, 1.0));
+  if (this->Inverse)
+  {
+    this->EraseUndefinedVectors();
+  }
 }
 
 WorldField VectorField::GetWorldField()
@@ -160,9 +180,10 @@ WorldField VectorField::GetWorldField()
     this->WorldVectors.Data = this->Shared->Read();
   }
   const std::size_t notFinite = FindFirst(this->WorldVectors.Count, VectorsPerPart,
-    [&](std::size_t i) { return !IsFinite(this->WorldVectors.Get(i)); });
+    [&](std::size_t i) { return !this->IsUndefined(i) && !IsFinite(this->WorldVectors.Get(i)); });
   CheckFinite(notFinite, this->WorldVectors.Count);
   WorldField field = MakeWorldField(this->Grid);
+  field.Undefined = this->Undefined;
   field.Vectors = this->WorldVectors;
   return field;
 }

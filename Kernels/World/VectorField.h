@@ -26,9 +26,12 @@ public:
 
   /// Set a field. vectors: one for each point, x varying fastest; their memory must stay valid
   /// until another field is set. isInverse: the field leads from the output to the volume at rest.
+  /// undefined: one byte for each point, not 0 if its vector is undefined; null: all vectors are
+  /// defined. Must stay valid, too.
   /// Throws an Error if the grid is empty or its transform is not invertible, or if the number of
   /// vectors is not the number of points.
-  void Set(const ImageGeometry& grid, const VectorView& vectors, bool isInverse);
+  void Set(const ImageGeometry& grid, const VectorView& vectors, bool isInverse,
+    const unsigned char* undefined = nullptr);
   /// Set a forward field of vectors that their owner may change. Update() takes such changes into
   /// account. The vectors are not copied, unless the field has several points per voxel
   /// (GetFieldStride()).
@@ -50,6 +53,7 @@ public:
 private:
   void Replace(const ImageGeometry& grid, const VectorView& vectors, bool isInverse,
     const std::shared_ptr<DeviceVectors>& shared);
+  bool IsUndefined(std::size_t point) const { return this->Undefined && this->Undefined[point]; }
   void Locate(const ImageGeometry& volume, const OutputMap& toOutput);
   void Convert(const ImageGeometry& volume, const OutputMap& toOutput);
   /// If GetFieldStride() is greater than 1, reduces the field to the points that are voxels, and
@@ -58,6 +62,7 @@ private:
 
   ImageGeometry Grid;
   VectorView WorldVectors;
+  const unsigned char* Undefined = nullptr; // of WorldVectors
   bool IsOld = true;
   ImageGeometry Volume;
   OutputMap ToOutput;

@@ -79,9 +79,10 @@ void WorldDeformer::SetNodeVectors(const VectorView& vectors)
   this->Mesh.SetVectors(vectors);
 }
 
-void WorldDeformer::SetField(const ImageGeometry& grid, const VectorView& vectors, bool isInverse)
+void WorldDeformer::SetField(const ImageGeometry& grid, const VectorView& vectors, bool isInverse,
+  const unsigned char* undefined)
 {
-  this->Field.Set(grid, vectors, isInverse);
+  this->Field.Set(grid, vectors, isInverse, undefined);
   this->Deformation = Deformations::Field;
 }
 
@@ -94,6 +95,10 @@ void WorldDeformer::SetField(
 
 void WorldDeformer::SetOutside(const OutsideVoxels& outside)
 {
+  if (!(this->Outside == outside) && !this->Field.GetUndefinedPoints().empty())
+  {
+    ++this->MasksVersion; // which voxels depend on undefined points has changed
+  }
   this->Outside = outside;
 }
 

@@ -114,7 +114,8 @@ public:
   /// or a field, the volume is not deformed. See WorldMesh and VectorField.
   void SetMesh(const VectorView& points, MeshCells&& cells);
   void SetNodeVectors(const VectorView& vectors);
-  void SetField(const ImageGeometry& grid, const VectorView& vectors, bool isInverse);
+  void SetField(const ImageGeometry& grid, const VectorView& vectors, bool isInverse,
+    const unsigned char* undefined = nullptr);
   void SetField(const ImageGeometry& grid, const std::shared_ptr<DeviceVectors>& vectors);
   ///@}
 
@@ -179,6 +180,7 @@ private:
   /// request.
   std::vector<VolumeArray> MakeArrays(
     const WorldRequest& request, const std::function<bool(double)>& progress);
+  void SendMasks();
   void UpdateRestPositions();
   void UpdateJacobians(const std::function<bool(double)>& progress);
   Resampling ChooseMethod(

@@ -79,8 +79,8 @@ void WorldDeformer::UpdateJacobians(const std::function<bool(double)>& progress)
   this->Jacobians.resize(static_cast<std::size_t>(GetNumberOfPoints(this->Volume->PointExtent)));
   if (!this->IsMesh())
   {
-    ComputeFieldJacobians(
-      this->GetVoxelGrid(), this->Field.GetField(this->Outside), {}, this->Jacobians.data());
+    ComputeFieldJacobians(this->GetVoxelGrid(), this->Field.GetField(this->Outside),
+      this->Field.GetUndefinedPoints(), this->Jacobians.data());
     return;
   }
   const MeshAtRest mesh = this->Mesh.GetMeshAtRest();
@@ -188,6 +188,25 @@ Resampling WorldDeformer::ChooseMethod(
     [&](Resampling method) { this->CheckMemory(arrays, whole, method); });
 }
 
+void WorldDeformer::SendMasks()
+{
+  WorldMasks masks = this->Masks;
+  Stamp stamp{ { nullptr, this->MasksVersion } };
+  std::vector<unsigned char> blanked;
+  if (!this->IsMesh() && !this->IsInverse() && !this->Field.GetUndefinedPoints().empty())
+  {
+    stamp.emplace_back(nullptr, this->Field.GetVectorsVersion());
+    if (stamp != this->Session.GetMasksStamp())
+    {
+      blanked = this->Field.FindUndefinedVoxels(
+        this->Volume->PointExtent, this->Outside, masks.Blanked, masks.BlankedBits);
+      masks.Blanked = blanked.data();
+      masks.BlankedBits = 1;
+    }
+  }
+  this->Session.SetMasks(masks, stamp);
+}
+
 void WorldDeformer::Send(const std::vector<VolumeArray>& arrays, Resampling method,
   const std::function<bool(double)>& progress)
 {
@@ -199,7 +218,7 @@ void WorldDeformer::Send(const std::vector<VolumeArray>& arrays, Resampling meth
   }
   this->Session.SetVoxelGrid(this->GetVoxelGrid(), arrays, method);
   this->Session.SetArrays(arrays, stamp);
-  this->Session.SetMasks(this->Masks, { { nullptr, this->MasksVersion } });
+  this->SendMasks();
   this->Session.SetDeformation(
     this->GetDeformation(), this->Mapping, this->GetMapped(), method, false, progress);
 }

@@ -160,6 +160,9 @@ public:
     field.vectors = vectors->GetVoidPointer(0);
     field.type = Types.at(vectors->GetDataType());
     field.inverse = isInverse ? 1 : 0;
+    vtkDataArray* ghosts = image->GetPointData()->GetArray("vtkGhostType");
+    field.undefined =
+      ghosts ? static_cast<const std::uint8_t*>(ghosts->GetVoidPointer(0)) : nullptr;
     Check(dv_set_field(this->Deformer, &field));
   }
 

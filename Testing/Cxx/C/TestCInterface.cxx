@@ -7,6 +7,7 @@
 
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <limits>
@@ -135,9 +136,26 @@ TEST(CInterface, Fields)
         field->SetSpacing(0.5 * steps[0], 0.5 * steps[1], 0.5 * steps[2]);
       }
     }
-    for (const bool isInverse : { false, true })
+    for (int trial = 0; trial < 4; ++trial)
     {
+      const bool isInverse = trial % 2 != 0;
+      const bool hasGaps = trial >= 2;
       SetDisplacements(field, Bend);
+      vtkNew<vtkUnsignedCharArray> ghosts;
+      ghosts->SetName("vtkGhostType");
+      for (vtkIdType id = 0; hasGaps && id < field->GetNumberOfPoints(); ++id)
+      {
+        ghosts->InsertNextValue(id % 97 == 5 ? vtkDataSetAttributes::HIDDENPOINT : 0);
+        if (id % 97 == 5)
+        {
+          field->GetPointData()->GetVectors()->SetComponent(
+            id, 2, std::numeric_limits<double>::quiet_NaN());
+        }
+      }
+      if (hasGaps)
+      {
+        field->GetPointData()->AddArray(ghosts);
+      }
       for (vtkIdType id = 0; kind == 2 && !isInverse && id < field->GetNumberOfPoints(); ++id)
       {
         // Points between voxels are never read.
@@ -158,6 +176,9 @@ TEST(CInterface, Fields)
       InC inC;
       inC.SetVolume(volume, 0.0);
       inC.SetField(field, isInverse);
+      deformed.Filter->SetGenerateJacobian(hasGaps);
+      deformed.Filter->SetGenerateRestPositions(hasGaps);
+      inC.WithExtra = hasGaps;
       inC.Compare(deformed);
       deformed.Filter->SetOutsideMode(vtkDeformVolumeFilter::EXTRAPOLATE);
       deformed.Filter->SetOutputBoundsMode(vtkDeformVolumeFilter::VOLUME_BOUNDS);
@@ -176,6 +197,13 @@ TEST(CInterface, Fields)
       deformed.Filter->SetOutputBoundsMode(vtkDeformVolumeFilter::DEFORMED_BOUNDS);
       inC.SetReference(reference);
       inC.Compare(deformed);
+      if (hasGaps)
+      {
+        field->GetPointData()->RemoveArray("vtkGhostType");
+        SetDisplacements(field, Bend);
+        inC.SetField(field, isInverse);
+        inC.Compare(deformed);
+      }
     }
   }
 }

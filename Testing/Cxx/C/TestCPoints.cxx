@@ -10,6 +10,7 @@
 #include <vtkCellTypeSource.h>
 #include <vtkDoubleArray.h>
 #include <vtkPolyData.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <cmath>
@@ -132,6 +133,12 @@ TEST(CPoints, Field)
     const std::int64_t outside = Compare(inC, field, isInverse, -20.0, 20.0);
     EXPECT_GT(outside, 1000);
     EXPECT_LT(outside, 39000);
+    // A point without a displacement.
+    field->AllocatePointGhostArray();
+    field->GetPointGhostArray()->SetValue(200, vtkDataSetAttributes::HIDDENPOINT);
+    inC.SetField(field, isInverse);
+    EXPECT_GT(Compare(inC, field, isInverse, -20.0, 20.0), outside);
+    field->GetPointData()->RemoveArray("vtkGhostType");
   }
 }
 
