@@ -195,8 +195,17 @@ std::vector<SourceArray> SelectArrays(
   }
   if (arrays.empty())
   {
+    std::string cellArrays;
+    for (const std::string& name : GetUnusedCellArrays(volume))
+    {
+      cellArrays += (cellArrays.empty() ? "" : ", ") + name;
+    }
     throw Error("The volume on input port 0 has no numeric point array, so there is nothing to "
                 "deform. Connect a vtkImageData with point scalars." +
+      (cellArrays.empty() ? ""
+                          : " It has cell arrays: " + cellArrays +
+            ". vtkCellDataToPointData (Cell Data to Point Data in ParaView) averages them at the "
+            "points.") +
       (leftOut.empty() ? ""
                        : " The type of this array cannot be resampled: " + leftOut.front() + "."));
   }

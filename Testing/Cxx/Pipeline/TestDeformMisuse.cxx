@@ -9,6 +9,7 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
+#include <vtkFloatArray.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkStringArray.h>
 #include <vtkUnsignedCharArray.h>
@@ -93,6 +94,9 @@ TEST_F(DeformMisuse, Volumes)
   auto bare = MakeImage({ { 0, 4, 0, 4, 0, 4 } });
   this->GetFilter()->SetInputData(bare);
   this->Expect("a volume without arrays", "no numeric point array");
+  bare->GetCellData()->AddArray(MakeArray<vtkFloatArray>("CT", bare->GetNumberOfCells()));
+  this->GetFilter()->SetInputData(bare);
+  this->Expect("a volume with cell arrays", "It has cell arrays: \"CT\". vtkCellDataToPointData");
   const auto bits = MakeArray<vtkBitArray>("bits", bare->GetNumberOfPoints());
   bare->GetPointData()->SetScalars(bits);
   this->GetFilter()->SetInputData(bare);
