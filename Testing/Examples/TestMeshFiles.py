@@ -217,10 +217,11 @@ def check_misuse_of_meshes():
     fails(1, [path("gone.vtu"), "no such file"], *as_mesh("broken.pvd"))
     write_collection(path("times.pvd"), [("later", "mesh.vtu")])
     fails(1, '"later" of a file is not a number', *as_mesh("times.pvd"))
-    write_text("untimed.pvd", '<VTKFile type="Collection"><Collection><DataSet file="mesh.vtu"/>'
-               '<DataSet file="before.vtu"/></Collection></VTKFile>\n')
-    Messages.warns(program, "names 2 files without the attribute timestep", path("in.vti"), *as_mesh("untimed.pvd"),
-                   "-o", path("untimed.vti"))
+    for attributes in ("", 'timestep="1"', 'timestep="1" part="0"'):
+        write_text("twice.pvd", f'<VTKFile type="Collection"><Collection><DataSet {attributes} file="mesh.vtu"/>'
+                   f'<DataSet {attributes} file="before.vtu"/></Collection></VTKFile>\n')
+        Messages.warns(program, "names 2 files with the same attributes timestep and part", path("in.vti"),
+                       *as_mesh("twice.pvd"), "-o", path("twice.vti"))
     write_collection(path("nested.pvd"), [(0, "one.pvd")])
     fails(1, "another .pvd file", *as_mesh("nested.pvd"))
     write_collection(path("msh.pvd"), [(0, "fe.msh")])

@@ -249,7 +249,7 @@ std::map<double, std::vector<std::string>> FindFiles(const Source& source)
   std::string folder = vtksys::SystemTools::GetFilenamePath(source.Path);
   folder = folder.empty() ? "." : folder;
   std::map<double, std::vector<std::string>> files;
-  int withoutTime = 0;
+  std::map<std::pair<double, std::string>, int> counts; // of files with the same time and part
   for (int i = 0; i < collection->GetNumberOfNestedElements(); ++i)
   {
     vtkXMLDataElement* entry = collection->GetNestedElement(i);
@@ -265,17 +265,23 @@ std::map<double, std::vector<std::string>> FindFiles(const Source& source)
       throw Failure("cannot read " + source.Path + ": the time step \"" + text +
         "\" of a file is not a number");
     }
-    withoutTime += text || entry->GetAttribute("part") ? 0 : 1;
+    const char* part = entry->GetAttribute("part");
+    ++counts[{ time, part ? part : "" }];
     files[time].push_back(vtksys::SystemTools::CollapseFullPath(file, folder));
   }
   if (files.empty())
   {
     throw Failure("cannot read " + source.Path + ": it names no files");
   }
-  if (withoutTime > 1)
+  for (const auto& [place, count] : counts)
   {
-    source.Log.Warn(source.Path + " names " + std::to_string(withoutTime) +
-      " files without the attribute timestep. They are read as parts of one mesh.");
+    if (count > 1 && place.first == files.rbegin()->first)
+    {
+      source.Log.Warn(source.Path + " names " + std::to_string(count) +
+        " files with the same attributes timestep and part, or without them. They are read as "
+        "parts "
+        "of one mesh.");
+    }
   }
   return files;
 }
