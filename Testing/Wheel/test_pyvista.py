@@ -84,7 +84,9 @@ class Images(unittest.TestCase):
         kept.SetDeformationData(mixed)
         self.expect_warning("1 triangle", kept.Update)
         # VTK runs the filter.
-        kept.Modified()
+        kept = self.DeformVolume()
+        kept.SetInputData(self.image)
+        kept.SetDeformationData(mixed)
         contour = vtkContourFilter()
         contour.SetInputConnection(kept.GetOutputPort())
         self.expect_warning("1 triangle", contour.Update)
