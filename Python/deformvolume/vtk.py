@@ -33,6 +33,7 @@ _BOUNDS = ("deformed", "volume")
 _ALL_TETRAHEDRA = 31
 _HIDDEN_BY_EDIT = 128  # of vtkVolumeEditAlgorithm::BlankCells
 _NO_SOURCE = vtkDataSetAttributes.DUPLICATEPOINT | vtkDataSetAttributes.HIDDENPOINT
+_TIMES = vtkStreamingDemandDrivenPipeline.TIME_STEPS(), vtkStreamingDemandDrivenPipeline.TIME_RANGE()
 _NO_CELL = vtkDataSetAttributes.DUPLICATECELL | vtkDataSetAttributes.HIDDENCELL
 _VALID = "vtkValidPointMask"
 # Arrays of ghosts and of edits are masks of the volume, and are not resampled.
@@ -459,6 +460,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
         def deform():
             time = self._check_time(info, inInfo)
             self._deform(output)
+            request = vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP()
+            # Without times, VTK does not execute the filter for another time.
+            if info.Has(request) and any(info.Has(key) for key in _TIMES):
+                time = info.Get(request)
             if time is not None:
                 output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), time)
 
@@ -480,7 +485,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
         return 1
 
     def _check_time(self, info, inInfo):
-        """Raises an error if the data of an input are not of the requested time. Returns their time, or None."""
+        """Raises an error if the data of an input are not of the requested time. Returns the first time of data, or
+        None."""
         steps = vtkStreamingDemandDrivenPipeline.TIME_STEPS()
         request = vtkStreamingDemandDrivenPipeline.UPDATE_TIME_STEP()
         found = None
@@ -497,7 +503,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
                 # Sources choose the time step before or after the request.
                 before = max([step for step in times if step <= wanted], default=times[0])
                 after = min([step for step in times if step >= wanted], default=times[-1])
-                if not before <= time <= after:
+                # Readers of one time step give the requested time to their data.
+                if time != wanted and not before <= time <= after:
                     raise ValueError(
                         f"Time {wanted} was requested, but the data on port {port} are of time {time}. Update the "
                         f"source first: source.UpdateTimeStep({wanted}), then filter.Update()."
@@ -520,12 +527,13 @@ class DeformVolume(VTKPythonAlgorithmBase):
         grid = self._deformer._find_output_grid()
         self._announced = bytes(grid)
         # VTK passes on the times of port 0 only. A filter without times is not executed for another time.
-        for key in (vtkStreamingDemandDrivenPipeline.TIME_STEPS(), vtkStreamingDemandDrivenPipeline.TIME_RANGE()):
-            times = next((source.Get(key) for source in sources if source.Has(key)), None)
-            if times is None:
-                info.Remove(key)
-            else:
+        steps, ends = [{time for source in sources if source.Has(key) for time in source.Get(key)} for key in _TIMES]
+        ends |= steps
+        for key, times in zip(_TIMES, (sorted(steps), [min(ends), max(ends)] if ends else [])):
+            if times:
                 info.Set(key, times, len(times))
+            else:
+                info.Remove(key)
         info.Set(vtkStreamingDemandDrivenPipeline.WHOLE_EXTENT(), grid.extent[:], 6)
         info.Set(vtkDataObject.ORIGIN(), grid.origin[:], 3)
         info.Set(vtkDataObject.SPACING(), grid.spacing[:], 3)

@@ -56,6 +56,37 @@ def make_mesh(shift, kind=None):
     return add_vectors(mesh, numpy.tile(shift, (8, 1)))
 
 
+def make_series(times, make):
+    """A source of make(time), which has the last of these times that is not after the requested one."""
+    from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
+    from vtkmodules.vtkCommonDataModel import vtkDataObject
+    from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as pipeline
+
+    class Series(VTKPythonAlgorithmBase):
+        def __init__(self):
+            VTKPythonAlgorithmBase.__init__(self, nInputPorts=0, outputType=make(times[0]).GetClassName())
+
+        def RequestInformation(self, request, inInfo, outInfo):
+            info = outInfo.GetInformationObject(0)
+            info.Set(pipeline.TIME_STEPS(), times, len(times))
+            info.Set(pipeline.TIME_RANGE(), [times[0], times[-1]], 2)
+            if self.OutputType == "vtkImageData":
+                info.Set(pipeline.WHOLE_EXTENT(), make(times[0]).GetExtent(), 6)
+            return 1
+
+        def RequestData(self, request, inInfo, outInfo):
+            info = outInfo.GetInformationObject(0)
+            asked = info.Get(pipeline.UPDATE_TIME_STEP()) if info.Has(pipeline.UPDATE_TIME_STEP()) else times[0]
+            time = max(step for step in times if step <= max(asked, times[0]))
+            output = vtkDataObject.GetData(info)
+            output.ShallowCopy(make(time))
+            # A reader of one time step gives the requested time to its data.
+            output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), time if len(times) > 1 else asked)
+            return 1
+
+    return Series()
+
+
 class Pipeline(unittest.TestCase):
     SHIFT = [3.0, -2.0, 1.0]
 
@@ -393,33 +424,11 @@ class Pipeline(unittest.TestCase):
         self.expect_shift()
 
     def test_time(self):
-        from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
         from vtkmodules.vtkCommonDataModel import vtkDataObject
         from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as pipeline
         from vtkmodules.vtkImagingCore import vtkImageFlip
 
-        class Moving(VTKPythonAlgorithmBase):
-            """A mesh that moves by 1 on x in each step of time."""
-
-            def __init__(self):
-                VTKPythonAlgorithmBase.__init__(self, nInputPorts=0, outputType="vtkUnstructuredGrid")
-
-            def RequestInformation(self, request, inInfo, outInfo):
-                info = outInfo.GetInformationObject(0)
-                info.Set(pipeline.TIME_STEPS(), [0.0, 1.0, 2.0], 3)
-                info.Set(pipeline.TIME_RANGE(), [0.0, 2.0], 2)
-                return 1
-
-            def RequestData(self, request, inInfo, outInfo):
-                info = outInfo.GetInformationObject(0)
-                time = info.Get(pipeline.UPDATE_TIME_STEP()) if info.Has(pipeline.UPDATE_TIME_STEP()) else 0.0
-                time = numpy.floor(time)
-                output = vtkDataObject.GetData(info)
-                output.ShallowCopy(make_mesh([time, 0.0, 0.0]))
-                output.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), time)
-                return 1
-
-        moving = Moving()
+        moving = make_series([0.0, 1.0, 2.0], lambda time: make_mesh([time, 0.0, 0.0]))
         self.filter.SetDeformationConnection(moving.GetOutputPort())
         flip = vtkImageFlip()
         flip.SetInputConnection(self.filter.GetOutputPort())
@@ -440,6 +449,18 @@ class Pipeline(unittest.TestCase):
         for time in (2, 0, 1):
             flip.UpdateTimeStep(float(time))
             expect(time, values(flip.GetOutput())[:, :, ::-1])
+        # The volume has times of its own.
+        for times in ([0.0], [0.0, 3.0]):
+            volume = make_series(times, lambda _: self.source.GetOutput())
+            self.filter.SetInputConnection(volume.GetOutputPort())
+            self.filter.UpdateInformation()
+            info = self.filter.GetOutputInformation(0)
+            self.assertEqual(info.Get(pipeline.TIME_STEPS()), tuple(sorted({0.0, 1.0, 2.0, *times})))
+            self.assertEqual(info.Get(pipeline.TIME_RANGE()), (0.0, max(2.0, *times)))
+            for time in (2, 0, 1):
+                self.filter.UpdateTimeStep(float(time))
+                expect(time, values(self.filter.GetOutput()))
+                self.assertEqual(self.filter.GetOutput().GetInformation().Get(vtkDataObject.DATA_TIME_STEP()), time)
 
     def test_pieces(self):
         """Pieces of the output are made from the whole inputs."""
