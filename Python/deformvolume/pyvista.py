@@ -23,8 +23,8 @@ class DeformVolumeAccessor:
         """Deforms the image by a mesh or a displacement field.
 
         Args:
-            deformation: a mesh (pyvista.UnstructuredGrid, StructuredGrid or RectilinearGrid) with displacements of its
-                points, or pyvista.ImageData with vectors.
+            deformation: a mesh (pyvista.UnstructuredGrid, StructuredGrid, ExplicitStructuredGrid, RectilinearGrid or a
+                MultiBlock of these) with displacements of its points, or pyvista.ImageData with vectors.
             vectors: the name of the array; None: the active vectors, or the only array of three components that is
                 neither normals nor of unsigned char.
             rest: the mesh at rest. The points of the deformation are then deformed positions.

@@ -15,8 +15,10 @@ from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import VTK_BIT, VTK_CHAR, VTK_UNSIGNED_CHAR, vtkDataArray, vtkIdList, vtkOutputWindow
 from vtkmodules.vtkCommonDataModel import (
     VTK_POLYHEDRON,
+    vtkCompositeDataSet,
     vtkDataObject,
     vtkDataSetAttributes,
+    vtkExplicitStructuredGrid,
     vtkImageData,
     vtkRectilinearGrid,
     vtkStructuredGrid,
@@ -81,6 +83,17 @@ def _stamp(*objects):
         return stamps
 
     return tuple(None if one is None else stamp(one) for one in objects)
+
+
+def _find_blocks(data):
+    """Returns the blocks of a composite dataset, or a list of other data."""
+    if not isinstance(data, vtkCompositeDataSet):
+        return [data]
+    blocks, leaves = [], data.NewIterator()
+    while not leaves.IsDoneWithTraversal():
+        blocks.append(leaves.GetCurrentDataObject())
+        leaves.GoToNextItem()
+    return blocks
 
 
 def _shape_stamp(mesh):
@@ -175,8 +188,9 @@ class DeformVolume(VTKPythonAlgorithmBase):
     Ports:
         0: vtkImageData, the volume. Ghost points, points whose vtkValidPointMask is 0, and tetrahedra that
             vtkCutVolume and vtkCarveVolume have switched off, are left out.
-        1, optional: a mesh (vtkUnstructuredGrid, vtkStructuredGrid or vtkRectilinearGrid) with displacements of its
-            points; or vtkImageData with vectors, a displacement field. Without it the output is the volume itself.
+        1, optional: a mesh (vtkUnstructuredGrid, vtkStructuredGrid, vtkExplicitStructuredGrid, vtkRectilinearGrid or a
+            composite dataset of these) with displacements of its points; or vtkImageData with vectors, a displacement
+            field. Without it the output is the volume itself.
             Cells of a mesh that vtkGhostType marks as hidden or duplicate are left out, and cells with a point that it
             hides or whose vtkValidPointMask is 0. If only displacements change between updates, a vtkUnstructuredGrid
             is faster than the other meshes.
@@ -425,8 +439,12 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def FillInputPortInformation(self, port, info):
         """Sets the data type of each port."""
-        types = ("vtkImageData", "vtkDataSet", "vtkDataSet", "vtkImageData")
-        info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), types[port])
+        if port in (0, 3):
+            info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), "vtkImageData")
+        else:
+            # With vtkDataSet as the first type, VTK would execute the filter for each block.
+            info.Set(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet")
+            info.Append(vtkAlgorithm.INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet")
         if port > 0:
             info.Set(vtkAlgorithm.INPUT_IS_OPTIONAL(), 1)
         return 1
@@ -515,7 +533,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
         return self.GetInputDataObject(port, 0) if self.GetNumberOfInputConnections(port) > 0 else None
 
     def _stamp_inputs(self):
-        return _stamp(*[self._input(port) for port in (0, 1, 2)])
+        return [_stamp(*_find_blocks(self._input(port))) for port in (0, 1, 2)]
 
     def _announce(self, info):
         sources = []
@@ -734,19 +752,30 @@ class DeformVolume(VTKPythonAlgorithmBase):
         self._send("deformation", (_stamp(data, array, ghosts, valid), inverse), send)
 
     def _convert(self, grid, port):
-        """Returns a structured or rectilinear grid as vtkUnstructuredGrid, and a vtkUnstructuredGrid as it is."""
+        """Returns other grids, and the blocks of a composite dataset, as vtkUnstructuredGrid, and a vtkUnstructuredGrid
+        as it is."""
         if isinstance(grid, vtkUnstructuredGrid):
             return grid
-        if not isinstance(grid, (vtkStructuredGrid, vtkRectilinearGrid)):
-            raise TypeError(
-                f"Port {port} has a {grid.GetClassName()}. Give vtkUnstructuredGrid, vtkStructuredGrid, "
-                "vtkRectilinearGrid or, on port 1, vtkImageData."
-            )
-        converter = self._converters.setdefault(port, vtkAppendFilter())
-        converter.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
-        converter.SetInputDataObject(grid)
-        converter.Update()
-        return converter.GetOutput()
+        blocks = _find_blocks(grid)
+        types = vtkUnstructuredGrid, vtkStructuredGrid, vtkExplicitStructuredGrid, vtkRectilinearGrid
+        for block in blocks:
+            if not isinstance(block, types):
+                of_blocks = "" if block is grid else f", as a block of a {grid.GetClassName()}"
+                raise TypeError(
+                    f"Port {port} has a {block.GetClassName()}{of_blocks}. Give "
+                    f"{', '.join(one.__name__ for one in types)}, a composite dataset of these or, on port 1, one "
+                    "vtkImageData, such as blocks[0] of pyvista."
+                )
+        stamp = _stamp(*blocks)
+        if self._converters.get(port, ())[:1] != (stamp,):
+            converter = vtkAppendFilter()
+            converter.SetOutputPointsPrecision(vtkAlgorithm.DOUBLE_PRECISION)
+            for block in blocks:
+                converter.AddInputDataObject(block)
+            if blocks:
+                converter.Update()
+            self._converters[port] = stamp, converter.GetOutput()
+        return self._converters[port][1]
 
     def _prepare_mesh(self, data, rest):
         deformed = self._convert(data, 1)
@@ -782,14 +811,14 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
         self._send("deformation", (_shape_stamp(mesh), "mesh"), send_mesh)
         if rest is None:
-            array = self._find_vectors(data)
+            array = self._find_vectors(deformed if isinstance(data, vtkCompositeDataSet) else data)
             self._send(
                 "displacements", _stamp(array, data), lambda: self._deformer.set_displacements(vtk_to_numpy(array))
             )
             return
-        if data.GetNumberOfPoints() != len(points):
+        if deformed.GetNumberOfPoints() != len(points):
             raise ValueError(
-                f"The mesh on port 1 has {data.GetNumberOfPoints()} points, but the mesh at rest on port 2 has "
+                f"The mesh on port 1 has {deformed.GetNumberOfPoints()} points, but the mesh at rest on port 2 has "
                 f"{len(points)}. Both must have the same points."
             )
 

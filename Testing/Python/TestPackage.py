@@ -20,11 +20,15 @@ import deformvolume_vtk  # noqa: E402
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy  # noqa: E402
 from vtkmodules.vtkCommonCore import vtkCharArray, vtkPoints  # noqa: E402
 from vtkmodules.vtkCommonDataModel import (  # noqa: E402
+    vtkCellArray,
+    vtkExplicitStructuredGrid,
     vtkImageData,
+    vtkMultiBlockDataSet,
     vtkRectilinearGrid,
     vtkStructuredGrid,
     vtkUnstructuredGrid,
 )
+from vtkmodules.vtkFiltersCore import vtkAppendFilter  # noqa: E402
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource  # noqa: E402
 
 from lattice import make_mesh  # noqa: E402
@@ -202,6 +206,26 @@ def test_pipelines():
     curved.BlankCell(7)
     curved.BlankPoint(3)
     compare("structured grid with hidden cells", image, curved)
+    explicit = vtkExplicitStructuredGrid()
+    explicit.SetDimensions(straight.GetDimensions())
+    explicit.SetPoints(made)
+    append = vtkAppendFilter()
+    append.SetInputData(straight)
+    append.Update()
+    # The nodes of hexahedra have another order than those of voxels.
+    hexahedra = vtkCellArray()
+    for cell in vtk_to_numpy(append.GetOutput().GetCells().GetConnectivityArray()).reshape(-1, 8):
+        hexahedra.InsertNextCell(8, cell[[0, 1, 3, 2, 4, 5, 7, 6]].tolist())
+    explicit.SetCells(hexahedra)
+    explicit.GetPointData().SetVectors(vectors)
+    compare("explicit structured grid", image, explicit)
+    blocks = vtkMultiBlockDataSet()
+    beside = vtkUnstructuredGrid()
+    beside.DeepCopy(append.GetOutput())
+    vtk_to_numpy(beside.GetPoints().GetData())[:] += (100.0, 0.0, 0.0)
+    for number, block in enumerate((explicit, None, beside)):
+        blocks.SetBlock(number, block)
+    compare("blocks", image, blocks)
     compare("field", image, make_field(image, 6))
     compare("field, keep", image, make_field(image, 6), OutsideMode=2, FadeDistance=8.0)
     extras = {"GenerateRestPositions": True, "GenerateJacobian": True}

@@ -560,6 +560,19 @@ class Pipeline(unittest.TestCase):
         self.filter.Update()
         self.assertTrue((values(self.filter.GetOutput()) != results[0]).any())
 
+    # The blocks may change in place.
+    def test_blocks(self):
+        from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
+
+        blocks = vtkMultiBlockDataSet()
+        mesh = make_mesh([0.0, 0.0, 0.0])
+        blocks.SetBlock(2, mesh)
+        self.filter.SetDeformationData(blocks)
+        self.filter.Update()
+        add_vectors(mesh, numpy.tile(self.SHIFT, (8, 1)))
+        self.filter.Update()
+        self.expect_shift()
+
     def test_counts(self):
         self.assertEqual(self.filter.GetNumberOfCoveredVoxels(), 0)
         self.assertEqual(self.filter.GetDeviceInUse(), "")
