@@ -14,8 +14,7 @@ def native(array, what: str) -> numpy.ndarray:
     if isinstance(array, numpy.ma.MaskedArray):
         raise TypeError(
             f"{what} is a masked array. Give array.filled(value). Voxels of a volume can be left out with "
-            "Deformer.set_blanked(). A field needs a vector at each point: interpolate those that are missing, or make "
-            "a Mesh of the cells that have all of them."
+            "Deformer.set_blanked(), and points of a field with Field(undefined=getmaskarray(array).any(axis=3))."
         )
     if hasattr(array, "dataobj"):  # an image of nibabel
         raise TypeError(f"{what} is a {type(array).__name__}. Give its values, numpy.asarray(image.dataobj).")

@@ -64,6 +64,9 @@ class Field:
         inverse: False: vectors lead from rest positions to deformed positions, as computed by simulations. True:
             vectors lead from positions of the output to rest positions, as computed by registrations ("resampling
             field").
+        undefined: shape (nx, ny, nz): True at points without a displacement, for example where digital volume
+            correlation found no match. Their vectors are not read, and may be NaN. Voxels whose interpolation would
+            use such a point are not covered. None: all vectors are defined.
 
     A Deformer does not notice changes of these arrays: call set_deformation() again.
     """
@@ -71,6 +74,7 @@ class Field:
     vectors: numpy.ndarray
     affine: numpy.ndarray
     inverse: bool = False
+    undefined: Optional[numpy.ndarray] = None
 
 
 @dataclass(eq=False, repr=False)
@@ -78,8 +82,8 @@ class Deformed:
     """The result of deform().
 
     Attributes:
-        arrays: the deformed arrays of the volume, of the same types. Axes: x, y, z and, if there is one, the axis of
-            components; in Fortran order.
+        arrays: the deformed arrays of the volume, of the same types, or of floats for densities. Axes: x, y, z and, if
+            there is one, the axis of components; in Fortran order.
         affine: 4 x 4 matrix from an index of the output to world coordinates.
         coverage: bool, axes x, y, z: whether the deformed volume covers the voxel.
         rest_positions: float32, shape (nx, ny, nz, 3): rest position of the tissue at the voxel, in world coordinates.
@@ -323,6 +327,7 @@ class Deformer:
         self._process = os.getpid()
         self._borrowed: Dict[str, object] = {}
         self._arrays: List[numpy.ndarray] = []
+        self._types: List[numpy.dtype] = []  # of the output
         self._shape: Optional[Tuple[int, int, int]] = None
         self._points = 0
         self._is_running = False
@@ -380,6 +385,7 @@ class Deformer:
         *,
         categorical: Union[bool, Sequence[bool]] = False,
         background: Union[float, Sequence[float]] = 0.0,
+        density: Union[bool, Sequence[bool]] = False,
     ) -> None:
         """Sets the volume at rest.
 
@@ -393,6 +399,10 @@ class Deformer:
                 each.
             background: value of voxels outside the deformed volume; one value for all arrays, or one for each. In
                 arrays of integers it is rounded, and limited to the range of the type.
+            density: whether arrays hold amounts per unit of volume, such as a dose or an activity; one value for all
+                arrays, or one for each. Their values are divided by the Jacobian determinant, so that their sum times
+                the volume of a voxel is preserved. The result is float64 for float64, otherwise float32. Their
+                background is 0, whatever `background` is; voxels at which the volume is inside out have it, too.
 
         If the grid changes, masks are removed.
         """
@@ -408,10 +418,10 @@ class Deformer:
                     "arrays on the same grid."
                 )
         grid = _grid_of(shape, affine, "the affine matrix of the volume")
-        self._set_volume_grid(grid, images, categorical, background)
+        self._set_volume_grid(grid, images, categorical, background, density)
 
     def _set_volume_grid(
-        self, grid: _structs.Grid, images: List[numpy.ndarray], categorical=False, background=0.0
+        self, grid: _structs.Grid, images: List[numpy.ndarray], categorical=False, background=0.0, density=False
     ) -> None:
         """Like set_volume(), for a grid of the library and arrays with the axes z, y, x."""
 
@@ -427,14 +437,16 @@ class Deformer:
 
         labels = each(categorical, "categorical")
         backgrounds = each(background, "background")
+        densities = [_flag(one, "density") for one in each(density, "density")]
         structs = (_structs.Array * max(1, len(images)))()
-        for struct, image, is_label, value in zip(structs, images, labels, backgrounds):
+        for struct, image, is_label, value, is_density in zip(structs, images, labels, backgrounds, densities):
             struct.struct_size = ctypes.sizeof(_structs.Array)
             struct.data = image.ctypes.data
             struct.type = _structs.type_of(image)
             struct.components = image.shape[3] if image.ndim == 4 else 1
             struct.categorical = _flag(is_label, "categorical")
-            struct.background = float(value)
+            struct.density = is_density
+            struct.background = 0.0 if is_density else float(value)
             if math.isnan(struct.background) and image.dtype.kind in "iub":
                 raise ValueError(f"The background is {value}, which an array of the type {image.dtype} cannot hold.")
         with self._locked():
@@ -442,6 +454,10 @@ class Deformer:
             self._call("dv_set_arrays", len(images), structs)
             self._borrowed["arrays"] = images, [_arrays.pin(image) for image in images]
             self._arrays = images
+            self._types = [
+                numpy.dtype(numpy.float32) if is_density and image.dtype != numpy.float64 else image.dtype
+                for image, is_density in zip(images, densities)
+            ]
             extent = grid.extent
             self._shape = tuple(extent[2 * axis + 1] - extent[2 * axis] + 1 for axis in range(3))
 
@@ -569,20 +585,31 @@ class Deformer:
         if vectors.dtype not in (numpy.float32, numpy.float64):
             vectors = vectors.astype(numpy.float64)
         grid = _grid_of(vectors.shape[2::-1], deformation.affine, "the affine matrix of the field")
-        self._set_field_grid(grid, vectors, deformation.inverse)
+        undefined = deformation.undefined
+        if undefined is not None:
+            undefined = _arrays.image(undefined, "The mask of undefined points") != 0
+            if undefined.shape != vectors.shape[:3]:
+                raise ValueError(
+                    f"The mask of undefined points has the shape {undefined.shape[::-1]}. For this field it must have "
+                    f"the shape {vectors.shape[2::-1]}."
+                )
+        self._set_field_grid(grid, vectors, deformation.inverse, undefined)
 
-    def _set_field_grid(self, grid: _structs.Grid, vectors: numpy.ndarray, inverse: bool) -> None:
-        """Sets a field with a grid of the library, and vectors with the axes z, y, x and an axis of components."""
+    def _set_field_grid(self, grid: _structs.Grid, vectors: numpy.ndarray, inverse: bool, undefined=None) -> None:
+        """Sets a field with a grid of the library, vectors with the axes z, y, x and an axis of components, and a mask
+        of bool of undefined points, or None."""
         struct = _structs.Field(
             grid=ctypes.pointer(grid),
             vectors=vectors.ctypes.data,
             type=_structs.type_of(vectors),
             inverse=_flag(inverse, "inverse"),
+            undefined=None if undefined is None else undefined.ctypes.data,
         )
         with self._locked():
             self._call("dv_set_field", ctypes.byref(struct))
             self._points = 0
-            self._borrowed["field"] = vectors, _arrays.pin(vectors)
+            masks = [] if undefined is None else [undefined]
+            self._borrowed["field"] = vectors, masks, [_arrays.pin(array) for array in [vectors, *masks]]
 
     def set_outside(self, mode: str = "discard", fade_distance: float = 0.0) -> None:
         """Sets what happens to voxels outside the mesh or the field.
@@ -697,7 +724,7 @@ class Deformer:
             grid = self._find_output_grid()
             shape = tuple(grid.extent[2 * axis + 1] - grid.extent[2 * axis] + 1 for axis in range(3))
             outputs = [
-                numpy.empty(shape[::-1] + array.shape[3:], array.dtype) for array in self._arrays
+                numpy.empty(shape[::-1] + array.shape[3:], dtype) for array, dtype in zip(self._arrays, self._types)
             ]
             coverage = numpy.empty(shape[::-1], numpy.int8)
             extra = {
@@ -842,6 +869,7 @@ def deform(
     reference: Union[Grid, Tuple[Sequence[int], numpy.ndarray], None] = None,
     categorical: Union[bool, Sequence[bool]] = False,
     background: Union[float, Sequence[float]] = 0.0,
+    density: Union[bool, Sequence[bool]] = False,
     outside: str = "discard",
     fade_distance: float = 0.0,
     interpolation: str = "linear",
@@ -862,7 +890,7 @@ def deform(
         deformation: a Mesh or a Field.
         affine: 4 x 4 matrix from the index of a voxel to world coordinates; None: the identity.
         reference: the grid of the output; None: given by bounds, padding and spacing, see Deformer.set_output().
-        categorical, background: see Deformer.set_volume().
+        categorical, background, density: see Deformer.set_volume().
         outside, fade_distance: see Deformer.set_outside().
         interpolation, rest_positions, jacobian, fold_count, extra_background, progress: see Deformer.deform().
         device: see Deformer.
@@ -883,7 +911,11 @@ def deform(
     """
     with Deformer(device) as deformer:
         deformer.set_volume(
-            volume, numpy.eye(4) if affine is None else affine, categorical=categorical, background=background
+            volume,
+            numpy.eye(4) if affine is None else affine,
+            categorical=categorical,
+            background=background,
+            density=density,
         )
         deformer.set_deformation(deformation)
         deformer.set_outside(outside, fade_distance)

@@ -64,6 +64,7 @@ class Field(_Structure):
         ("vectors", c_void_p),
         ("type", c_int32),
         ("inverse", c_int32),
+        ("undefined", c_void_p),
     ]
 
 

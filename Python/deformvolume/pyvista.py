@@ -19,7 +19,7 @@ class DeformVolumeAccessor:
     def __init__(self, image):
         self._image = image
 
-    def deform(self, deformation, *, vectors=None, rest=None, reference=None, categorical=(), **properties):
+    def deform(self, deformation, *, vectors=None, rest=None, reference=None, categorical=(), density=(), **properties):
         """Deforms the image by a mesh or a displacement field.
 
         Args:
@@ -30,6 +30,7 @@ class DeformVolumeAccessor:
             rest: the mesh at rest. The points of the deformation are then deformed positions.
             reference: an image with the grid of the output.
             categorical: names of arrays of labels, which are not interpolated.
+            density: names of arrays of amounts per unit of volume, see DeformVolume.AddDensityArray().
             properties: properties of DeformVolume, such as OutsideMode=DeformVolume.KEEP.
 
         Returns:
@@ -47,6 +48,7 @@ class DeformVolumeAccessor:
             rest=rest,
             reference=reference,
             categorical=categorical,
+            density=density,
             **properties,
         )
 
@@ -56,6 +58,19 @@ def _check(**data):
     for what, given in data.items():
         if not isinstance(given, vtkDataObject):
             raise TypeError(f"{what} is a {type(given).__name__}. Give a data set of pyvista or VTK.")
+
+
+def _take_names(image, what, names):
+    """Returns names of point arrays of the image, which an argument lists."""
+    if isinstance(names, str) or not isinstance(names, Iterable):
+        raise TypeError(f"{what} is {names!r}. Give a list of names of arrays.")
+    names = list(names)
+    unknown = [name for name in names if name not in image.point_data]
+    if unknown:
+        of_cells = [name for name in unknown if name in image.cell_data]
+        advice = f" {of_cells} are cell arrays: image.cells_to_points() makes them point arrays." if of_cells else ""
+        raise ValueError(f"The image has no point arrays {unknown}, which {what} names.{advice}")
+    return names
 
 
 def _make_filter(deformation, vectors, rest):
@@ -71,17 +86,11 @@ def _make_filter(deformation, vectors, rest):
     return deformer
 
 
-def deform(image, deformation, *, vectors=None, rest=None, reference=None, categorical=(), **properties):
+def deform(image, deformation, *, vectors=None, rest=None, reference=None, categorical=(), density=(), **properties):
     """Does the same as DeformVolumeAccessor.deform(), for versions of pyvista without accessors."""
     _check(image=image)
-    if isinstance(categorical, str) or not isinstance(categorical, Iterable):
-        raise TypeError(f"categorical is {categorical!r}. Give a list of names of arrays.")
-    categorical = list(categorical)
-    unknown = [name for name in categorical if name not in image.point_data]
-    if unknown:
-        of_cells = [name for name in unknown if name in image.cell_data]
-        advice = f" {of_cells} are cell arrays: image.cells_to_points() makes them point arrays." if of_cells else ""
-        raise ValueError(f"The image has no point arrays {unknown}, which categorical names.{advice}")
+    categorical = _take_names(image, "categorical", categorical)
+    density = _take_names(image, "density", density)
     deformer = _make_filter(deformation, vectors, rest)
     deformer.SetInputDataObject(0, image)
     if reference is not None:
@@ -89,6 +98,8 @@ def deform(image, deformation, *, vectors=None, rest=None, reference=None, categ
         deformer.SetReferenceData(reference)
     for name in categorical:
         deformer.AddCategoricalArray(name)
+    for name in density:
+        deformer.AddDensityArray(name)
     for name, value in properties.items():
         if not hasattr(deformer, f"Set{name}"):
             raise TypeError(

@@ -69,6 +69,7 @@ def deform(
     reference: "SimpleITK.Image" = None,
     categorical: bool = False,
     background: float = 0.0,
+    density: bool = False,
     outside: str = "discard",
     fade_distance: float = 0.0,
     interpolation: str = "linear",
@@ -87,15 +88,16 @@ def deform(
             outside="keep" keeps the image as it is; SimpleITK.Resample does so from half a voxel outside the field.
         reference: an image with the grid of the output; None: the grid of the image with an inverse field, otherwise a
             grid that holds the deformed image.
-        categorical, background, outside, fade_distance, interpolation, device: see deformvolume.deform().
+        categorical, background, density, outside, fade_distance, interpolation, device: see deformvolume.deform().
 
     Returns:
-        SimpleITK.Image: the deformed image, of the same pixel type, without the metadata of the image.
+        SimpleITK.Image: the deformed image, of the same pixel type, or of floats for a density, without the metadata of
+            the image.
     """
     _check_image(image, "The image")
     with _deformer.Deformer(device) as deformer:
         pixels = numpy.ascontiguousarray(_arrays.native(SimpleITK.GetArrayViewFromImage(image), "The image"))
-        deformer._set_volume_grid(_grid_of(image, "The image"), [pixels], categorical, background)
+        deformer._set_volume_grid(_grid_of(image, "The image"), [pixels], categorical, background, density)
         if isinstance(deformation, (SimpleITK.Image, SimpleITK.Transform)):
             field, vectors = _read_field(deformation)
             is_inverse = inverse

@@ -12,7 +12,16 @@ import sys
 import numpy
 from vtkmodules.util.numpy_support import get_vtk_array_type, vtk_to_numpy
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
-from vtkmodules.vtkCommonCore import VTK_BIT, VTK_CHAR, VTK_UNSIGNED_CHAR, vtkDataArray, vtkIdList, vtkOutputWindow
+from vtkmodules.vtkCommonCore import (
+    VTK_BIT,
+    VTK_CHAR,
+    VTK_DOUBLE,
+    VTK_FLOAT,
+    VTK_UNSIGNED_CHAR,
+    vtkDataArray,
+    vtkIdList,
+    vtkOutputWindow,
+)
 from vtkmodules.vtkCommonDataModel import (
     VTK_POLYHEDRON,
     vtkCompositeDataSet,
@@ -32,6 +41,12 @@ from . import _deformer, _native, _structs
 _OUTSIDE = tuple(_structs.OUTSIDE)
 _INTERPOLATION = tuple(_structs.INTERPOLATION)
 _BOUNDS = ("deformed", "volume")
+# The constants of each property that has some.
+_CONSTANTS = {
+    "OutsideMode": [name.upper() for name in _OUTSIDE],
+    "Interpolation": [f"{name.upper()}_INTERPOLATION" for name in _INTERPOLATION],
+    "OutputBoundsMode": [f"{name.upper()}_BOUNDS" for name in _BOUNDS],
+}
 _ALL_TETRAHEDRA = 31
 _HIDDEN_BY_EDIT = 128  # of vtkVolumeEditAlgorithm::BlankCells
 _NO_SOURCE = vtkDataSetAttributes.DUPLICATEPOINT | vtkDataSetAttributes.HIDDENPOINT
@@ -113,16 +128,12 @@ def _find_cell_masks(mesh):
 
 def _find_used_cells(mesh, connectivity, offsets):
     """Returns which cells are neither hidden nor duplicate, and have no hidden point; None: all."""
-    cell_ghosts, ghosts, valid = _find_cell_masks(mesh)
-    hidden = numpy.zeros(mesh.GetNumberOfPoints(), bool)
-    if ghosts is not None:
-        hidden |= (_view(ghosts, hidden.shape) & vtkDataSetAttributes.HIDDENPOINT) != 0
-    if valid is not None:
-        hidden |= _view(valid, hidden.shape) == 0
+    cell_ghosts = _find_cell_masks(mesh)[0]
+    hidden = _find_hidden_points(mesh)
     used = numpy.ones(mesh.GetNumberOfCells(), bool)
     if cell_ghosts is not None:
         used &= (_view(cell_ghosts, used.shape) & _NO_CELL) == 0
-    if hidden.any():
+    if hidden is not None:
         # Indices that do not exist are errors of the engine.
         exists = (connectivity >= 0) & (connectivity < hidden.size)
         counts = numpy.concatenate(([0], numpy.cumsum(exists & hidden[numpy.where(exists, connectivity, 0)])))
@@ -177,6 +188,31 @@ def _name_arrays(data, masks):
     ]
 
 
+def _describe_cell_arrays(data):
+    """Returns a sentence for errors of missing point arrays, which names the cell arrays; "" if there are none."""
+    names = ", ".join(name for _, name in _name_arrays(data.GetCellData(), _CELL_MASKS))
+    method = "cells_to_points" if isinstance(data, vtkImageData) else "cell_data_to_point_data"
+    advice = f"Convert these by vtkCellDataToPointData, or by {method}() of pyvista."
+    return f" Its cell arrays: {names}. {advice}" if names else ""
+
+
+def _describe_arrays(data):
+    """Returns sentences for errors of missing point arrays, which name the arrays."""
+    names = ", ".join(name for _, name in _name_arrays(data.GetPointData(), _POINT_MASKS)) or "none"
+    return f" Its point arrays: {names}." + _describe_cell_arrays(data)
+
+
+def _find_hidden_points(data):
+    """Returns a mask of the points that are hidden or not valid; None if there are none."""
+    ghosts, valid = data.GetPointData().GetArray("vtkGhostType"), data.GetPointData().GetArray(_VALID)
+    hidden = numpy.zeros(data.GetNumberOfPoints(), bool)
+    if ghosts is not None:
+        hidden |= (_view(ghosts, hidden.shape) & vtkDataSetAttributes.HIDDENPOINT) != 0
+    if valid is not None:
+        hidden |= _view(valid, hidden.shape) == 0
+    return hidden if hidden.any() else None
+
+
 def _is_numeric(array):
     # numpy_support copies arrays of bits, so that the library could not write their output.
     return isinstance(array, vtkDataArray) and array.GetDataType() != VTK_BIT
@@ -192,7 +228,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
             composite dataset of these) with displacements of its points; or vtkImageData with vectors, a displacement
             field. Without it the output is the volume itself.
             Cells of a mesh that vtkGhostType marks as hidden or duplicate are left out, and cells with a point that it
-            hides or whose vtkValidPointMask is 0. If only displacements change between updates, a vtkUnstructuredGrid
+            hides or whose vtkValidPointMask is 0. Such points of a field are undefined: voxels whose interpolation
+            would use one are not covered. If only displacements change between updates, a vtkUnstructuredGrid
             is faster than the other meshes.
             SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, name) chooses the array of three
             components, in world units. Default: the active vectors, or else the only array of three components that
@@ -212,7 +249,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
         GenerateRestPositions, GenerateJacobian, GenerateFoldCount: whether the output has the arrays RestPosition,
             Jacobian and FoldCount; off by default.
         Device: a name of deformvolume.devices(), a part of a name, "cpu", "gpu", or "" (default): the best device.
-    AddCategoricalArray(name) and ClearCategoricalArrays() choose arrays of labels.
+    AddCategoricalArray(name) and ClearCategoricalArrays() choose arrays of labels, AddDensityArray(name) and
+    ClearDensityArrays() amounts per unit of volume.
 
     Folds cause no warning: see GetNumberOfInvertedTetrahedra(). Warnings are displayed as VTK's are. If pyvista is
     imported, which hides those, they are Python warnings (deformvolume.DeformationWarning).
@@ -244,6 +282,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
             "Device": "",
         }
         self._categorical = set()
+        self._densities = set()
         self._counts = {}
         self._device = ""
         self._warned = set()
@@ -289,15 +328,14 @@ class DeformVolume(VTKPythonAlgorithmBase):
         accepted, wanted = {
             str: (str, "a text"),
             float: (numbers.Real, "a number"),
-            int: (numbers.Integral, "one of the constants of DeformVolume, such as DeformVolume.KEEP"),
+            int: (numbers.Integral, " or ".join(f"DeformVolume.{one}" for one in _CONSTANTS.get(name, ()))),
             bool: ((numbers.Integral, numpy.bool_), "True or False"),
         }[type(before)]
         if not isinstance(value, accepted):
             raise TypeError(f"{name} is {value!r}. Give {wanted}.")
         value = type(before)(value)
-        choices = {"OutsideMode": _OUTSIDE, "Interpolation": _INTERPOLATION, "OutputBoundsMode": _BOUNDS}
-        if name in choices:
-            value = min(max(value, 0), len(choices[name]) - 1)
+        if name in _CONSTANTS:
+            value = min(max(value, 0), len(_CONSTANTS[name]) - 1)
         if value != before:
             self._settings[name] = value
             if name == "Device":
@@ -306,16 +344,32 @@ class DeformVolume(VTKPythonAlgorithmBase):
 
     def AddCategoricalArray(self, name):
         """Treats the array of this name as labels, which are not interpolated."""
-        if not isinstance(name, str):
-            raise TypeError(f"The name of the array is {name!r}. Give a text.")
-        if name not in self._categorical:
-            self._categorical.add(name)
-            self.Modified()
+        self._add_name(self._categorical, name)
 
     def ClearCategoricalArrays(self):
         """Treats no array as labels."""
-        if self._categorical:
-            self._categorical.clear()
+        self._clear_names(self._categorical)
+
+    def AddDensityArray(self, name):
+        """Treats the array of this name as amounts per unit of volume, such as a dose. Its values are divided by the
+        Jacobian, so that their sum is kept. They are 0, and not BackgroundValue, where the deformed volume covers no
+        voxel or is inside out. The array of the output is of type double if that of the volume is, else float."""
+        self._add_name(self._densities, name)
+
+    def ClearDensityArrays(self):
+        """Treats no array as amounts per unit of volume."""
+        self._clear_names(self._densities)
+
+    def _add_name(self, names, name):
+        if not isinstance(name, str):
+            raise TypeError(f"The name of the array is {name!r}. Give a text.")
+        if name not in names:
+            names.add(name)
+            self.Modified()
+
+    def _clear_names(self, names):
+        if names:
+            names.clear()
             self.Modified()
 
     def SetInputData(self, data):
@@ -611,6 +665,13 @@ class DeformVolume(VTKPythonAlgorithmBase):
         if not arrays:
             raise ValueError(
                 "The volume on port 0 has no numeric point array. Connect a vtkImageData with point scalars."
+                + _describe_arrays(image)
+            )
+        unknown = self._densities - {array.GetName() for array in arrays}
+        if unknown:
+            raise ValueError(
+                f'The volume on port 0 has no numeric point array "{min(unknown)}", which AddDensityArray() names.'
+                + _describe_arrays(image)
             )
         for number, array in enumerate(arrays):
             if array.GetName() and any(other.GetName() == array.GetName() for other in arrays[:number]):
@@ -627,6 +688,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
             array.GetName() in self._categorical or any(array is other for other in ids)
             for array in arrays
         ]
+        densities = [array.GetName() in self._densities for array in arrays]
         background = self._settings["BackgroundValue"]
         self._arrays = arrays
 
@@ -636,10 +698,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
             views = [numpy.ascontiguousarray(_view(array, shape)) for array in arrays]
             # NaN becomes 0 in integers, as in the C++ class.
             values = [0.0 if view.dtype.kind in "iu" and background != background else background for view in views]
-            self._deformer._set_volume_grid(_grid_of(image), views, labels, values)
+            self._deformer._set_volume_grid(_grid_of(image), views, labels, values, densities)
             self._prepare_masks(shape, *edits)
 
-        self._send("volume", (_stamp(image, *arrays, *edits), tuple(labels), background), send)
+        self._send("volume", (_stamp(image, *arrays, *edits), labels, densities, background), send)
 
     def _prepare_masks(self, shape, ghosts, valid, boundary, cut_distances, active, cut, cell_ghosts):
         cells = tuple(number - 1 for number in shape)
@@ -682,7 +744,8 @@ class DeformVolume(VTKPythonAlgorithmBase):
             array = points.GetArray(name)
             if array is None:
                 raise ValueError(
-                    f'The deformation on port 1 has no point array "{name}". Choose one with SetInputArrayToProcess().'
+                    f'The deformation on port 1 has no numeric point array "{name}". Choose one with '
+                    "SetInputArrayToProcess(), or with vectors=NAME of deformvolume.pyvista." + _describe_arrays(data)
                 )
         else:
             array = points.GetVectors()
@@ -702,7 +765,7 @@ class DeformVolume(VTKPythonAlgorithmBase):
                     "The deformation on port 1 has no active vectors. Its point arrays of three components are: "
                     f"{names}. Normals, and colors of unsigned char, are only used if they are chosen. Set active "
                     "vectors, or choose an array with SetInputArrayToProcess(), or with vectors=NAME of "
-                    "deformvolume.pyvista."
+                    "deformvolume.pyvista." + _describe_cell_arrays(data)
                 )
         if array.GetNumberOfComponents() != 3:
             raise ValueError(
@@ -738,16 +801,11 @@ class DeformVolume(VTKPythonAlgorithmBase):
         inverse = self._settings["FieldIsInverse"]
 
         def send():
-            hidden = ghosts is not None and (vtk_to_numpy(ghosts) & vtkDataSetAttributes.HIDDENPOINT).any()
-            if hidden or (valid is not None and not vtk_to_numpy(valid).all()):
-                raise ValueError(
-                    "The displacement field on port 1 has hidden points. Only the C++ class vtkDeformVolumeFilter "
-                    "supports them."
-                )
+            hidden = _find_hidden_points(data)
             vectors = _view(array, data.GetDimensions()[::-1])
             if vectors.dtype not in (numpy.float32, numpy.float64):
                 vectors = vectors.astype(numpy.float64)
-            self._deformer._set_field_grid(_grid_of(data), numpy.ascontiguousarray(vectors), inverse)
+            self._deformer._set_field_grid(_grid_of(data), numpy.ascontiguousarray(vectors), inverse, hidden)
 
         self._send("deformation", (_stamp(data, array, ghosts, valid), inverse), send)
 
@@ -906,7 +964,14 @@ class DeformVolume(VTKPythonAlgorithmBase):
         data = volume.GetPointData()
         outputs = []
         for source in self._arrays:
-            outputs.append(add(source.GetName(), None, source.GetNumberOfComponents(), source.GetDataType()))
+            kind = source.GetDataType()
+            kind = VTK_FLOAT if source.GetName() in self._densities and kind != VTK_DOUBLE else kind
+            outputs.append(add(source.GetName(), None, source.GetNumberOfComponents(), kind))
+            array = output.GetPointData().GetAbstractArray(len(outputs) - 1)
+            array.CopyComponentNames(source)
+            array.SetLookupTable(source.GetLookupTable())
+            if source.HasInformation():
+                array.CopyInformation(source.GetInformation(), 1)
         mask = add("vtkValidPointMask", None, vtk_type=VTK_CHAR)
         extra = {}
         if self._settings["GenerateRestPositions"]:

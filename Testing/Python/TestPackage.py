@@ -18,7 +18,7 @@ import deformvolume as dv  # noqa: E402
 from deformvolume.vtk import DeformVolume  # noqa: E402
 import deformvolume_vtk  # noqa: E402
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy  # noqa: E402
-from vtkmodules.vtkCommonCore import vtkCharArray, vtkPoints  # noqa: E402
+from vtkmodules.vtkCommonCore import vtkCharArray, vtkPoints, vtkUnsignedCharArray  # noqa: E402
 from vtkmodules.vtkCommonDataModel import (  # noqa: E402
     vtkCellArray,
     vtkExplicitStructuredGrid,
@@ -63,6 +63,7 @@ def make_image(first=3, size=(30, 25, 20), spacing=(1.5, 2.0, 2.5), direction=TU
         flat = values.reshape(-1, 2) if values.ndim == 4 else values.ravel()
         made = numpy_to_vtk(flat, deep=True)
         made.SetName(name)
+        made.SetComponentName(0, name + " of tissue")
         image.GetPointData().AddArray(made)
     image.GetPointData().SetActiveScalars("values")
     return image
@@ -100,7 +101,7 @@ def make_reference():
     return reference
 
 
-def compare(name, image, deformation, rest=None, reference=None, **properties):
+def compare(name, image, deformation, rest=None, reference=None, densities=(), **properties):
     """Checks that the filter of the package has the same output as the C++ filter."""
     outputs = []
     for kind in (DeformVolume, Filter):
@@ -109,6 +110,8 @@ def compare(name, image, deformation, rest=None, reference=None, **properties):
         if deformation is not None:
             made.SetDeformationData(deformation)
         made.AddCategoricalArray("labels")
+        for density in densities:
+            made.AddDensityArray(density)
         made.SetBackgroundValue(-3.0)
         if rest is not None:
             made.SetRestData(rest)
@@ -128,6 +131,8 @@ def compare(name, image, deformation, rest=None, reference=None, **properties):
         a = vtk_to_numpy(ours.GetPointData().GetArray(array))
         b = vtk_to_numpy(theirs.GetPointData().GetArray(array))
         assert a.dtype == b.dtype and a.tobytes() == b.tobytes(), f"{name}: {array} differs"
+        described = [one.GetPointData().GetArray(array).GetComponentName(0) for one in outputs]
+        assert described[0] == described[1], (name, described)
     mask = vtk_to_numpy(ours.GetPointData().GetArray("vtkValidPointMask"))
     assert 0 < mask.sum(), name
     assert ours.GetPointData().GetScalars().GetName() == "values", ours.GetPointData().GetScalars().GetName()
@@ -230,6 +235,27 @@ def test_pipelines():
     compare("field, keep", image, make_field(image, 6), OutsideMode=2, FadeDistance=8.0)
     extras = {"GenerateRestPositions": True, "GenerateJacobian": True}
     compare("field, extras", image, make_field(image, 6), GenerateFoldCount=True, **extras)
+    gaps = make_field(image, 6)
+    ghosts = vtkUnsignedCharArray()
+    ghosts.SetName("vtkGhostType")
+    for number in range(216):
+        ghosts.InsertNextValue(2 if number == 86 else 0)  # HIDDENPOINT
+    gaps.GetPointData().AddArray(ghosts)
+    gaps.GetPointData().GetVectors().SetTuple3(86, np.nan, 0.0, np.inf)
+    valid = numpy_to_vtk((np.arange(216) != 7).astype(np.int8), deep=True)
+    valid.SetName("vtkValidPointMask")
+    gaps.GetPointData().AddArray(valid)
+    hidden = vtkImageData()
+    hidden.DeepCopy(image)
+    hidden.AllocatePointGhostArray()
+    hidden.GetPointGhostArray().SetValue(5000, 2)
+    for mode in range(3):
+        compare(f"field with gaps, {mode}", hidden, gaps, OutsideMode=mode, FadeDistance=9.0, **extras)
+    compare("inverse field with gaps", hidden, gaps, FieldIsInverse=True, **extras)
+    densities = ["values", "fractions"]
+    for deformation in (mesh, gaps):
+        compare("densities", image, deformation, densities=densities)
+    compare("densities, inverse", image, gaps, densities=densities, FieldIsInverse=True, **extras)
     compare("inverse", image, make_field(image, 6), reference=make_reference(), FieldIsInverse=True, **extras)
     body = deformvolume_vtk.vtkFiniteElementDeformation()
     fixed = numpy_to_vtk((vtk_to_numpy(mesh.GetPoints().GetData())[:, 2] < 0).astype(np.uint8), deep=True)
@@ -357,6 +383,45 @@ def test_arrays():
     assert np.array_equal(still.array, cube)
 
 
+# A volume that becomes eight times as large, and a field with a gap.
+def test_densities_and_gaps():
+    grid = np.moveaxis(np.indices((3, 3, 3)), 0, 3)
+    vectors = 4.0 * grid
+    field = dv.Field(vectors, np.diag([4.0, 4.0, 4.0, 1.0]))
+    for dtype, made in ((np.int16, np.float32), (bool, np.float32), (np.float64, np.float64)):
+        dose = np.ones((9, 9, 9), dtype)
+        options = {"bounds": (-1, 16, -1, 16, -1, 16), "background": 7.0}
+        result = dv.deform([dose, dose], field, density=[True, False], **options)
+        assert [array.dtype for array in result.arrays] == [made, dose.dtype]
+        assert np.allclose(result.array, 0.125 * result.coverage) and 0 < result.coverage.mean() < 1
+    assert np.allclose(result.arrays[1], np.where(result.coverage, 1.0, 7.0))
+    expect(dv.Error, "categorical", lambda: dv.deform(dose, field, density=True, categorical=True))
+    expect(TypeError, "density", lambda: dv.deform(dose, field, density="no"))
+    vectors[1, 2, 2] = np.nan
+    expect(dv.Error, "mark its point as undefined", lambda: dv.deform(dose, field))
+    field.undefined = np.isnan(vectors).any(axis=3)
+    # Voxels at rest are every second voxel of the output. Without a displacement they are not covered.
+    gap, whole = dv.deform(dose, field, **options).coverage, result.coverage
+    assert whole[3:16:2, 11::2, 11::2].all() and not gap[3:16:2, 11::2, 11::2].any()
+    assert np.array_equal(gap[:, :10], whole[:, :10]) and np.array_equal(gap[:, :, :10], whole[:, :, :10])
+    assert not dv.deform_points([[4.0, 8.0, 8.0]], field).valid[0]
+    # Which voxels outside the field depend on an undefined point of its border changes with the outside mode.
+    border = np.zeros((3, 3, 3), bool)
+    border[2, 2, 2] = True
+    edge = dv.Field(np.zeros((3, 3, 3, 3)), np.diag([4.0, 4.0, 4.0, 1.0]), undefined=border)
+    kept, counts = dv.Deformer(), []
+    kept.set_volume(np.ones((13, 13, 13)), np.eye(4))
+    kept.set_deformation(edge)
+    kept.set_output("volume")
+    for outside in (("extrapolate",), ("keep", 1.0), ("discard",), ("extrapolate",)):
+        kept.set_outside(*outside)
+        counts.append(int(kept.deform().coverage.sum()))
+    again = dv.deform(np.ones((13, 13, 13)), edge, bounds="volume", outside="keep", fade_distance=1.0)
+    assert counts[1] == again.coverage.sum() > counts[0] == counts[3] > counts[2], counts
+    field.undefined = field.undefined[:2]
+    expect(ValueError, "must have the shape (3, 3, 3)", lambda: dv.deform(dose, field))
+
+
 def test_progress_and_warnings():
     big = np.zeros((120, 120, 120), np.float32)
     field = dv.Field(random.normal(size=(4, 4, 4, 3)), np.diag([40.0, 40.0, 40.0, 1.0]))
@@ -392,6 +457,7 @@ def test_examples():
 test_misuse()
 test_pipelines()
 test_arrays()
+test_densities_and_gaps()
 test_progress_and_warnings()
 test_examples()
 print("all tests passed")

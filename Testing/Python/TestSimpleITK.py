@@ -80,6 +80,8 @@ box = sitk.GetImageFromArray(np.pad(np.full((4, 4, 4), 200, "u1"), 8))
 moved = ds.deform(box, dv.Field(shift, np.diag([19.0, 19.0, 19.0, 1.0])))
 x = moved.TransformPhysicalPointToIndex((12.0, 10.0, 10.0))
 assert moved[x] == 200 and moved.GetPixelID() == sitk.sitkUInt8
+dose = ds.deform(box, dv.Field(shift, np.diag([19.0, 19.0, 19.0, 1.0])), background=7.0, density=True)
+assert dose.GetPixelID() == sitk.sitkFloat32 and np.isclose(sitk.GetArrayFromImage(dose).sum(), 64 * 200.0)
 colors = sitk.Compose(box, box, box)
 assert ds.deform(colors, dv.Field(shift, np.diag([19.0, 19.0, 19.0, 1.0])))[x] == (200, 200, 200)
 

@@ -58,11 +58,13 @@ class Images(unittest.TestCase):
             self.module.deform_points(self.image, self.mesh)
         with self.assertRaisesRegex(TypeError, "no property outside.*OutsideMode=DeformVolume.KEEP"):
             self.deform(self.mesh, outside="keep")
-        with self.assertRaisesRegex(TypeError, "such as DeformVolume.KEEP"):
+        with self.assertRaisesRegex(TypeError, "or DeformVolume.KEEP"):
             self.deform(self.mesh, OutsideMode="keep")
         self.image.cell_data["c"] = numpy.arange(self.image.n_cells)
         with self.assertRaisesRegex(ValueError, r"\['c', 'd'\].*\['c'\] are cell arrays"):
             self.deform(self.mesh, categorical=["v", "c", "d"])
+        with self.assertRaisesRegex(ValueError, r"\['c'\], which density names"):
+            self.deform(self.mesh, density=["v", "c"])
         with self.assertRaisesRegex(TypeError, "vtkPolyData"):
             self.module.deform_points(pyvista.Sphere(), pyvista.Sphere(), vectors="Normals")
         with self.assertRaisesRegex(ValueError, '"Normals"'):
@@ -119,6 +121,9 @@ class Images(unittest.TestCase):
         grid = grid.cast_to_structured_grid()
         numpy.testing.assert_array_equal(self.deform(grid)["v"], wanted["v"])
         self.assertIn("v", self.deform(grid.warp_by_vector("U"), rest=grid).array_names)
+        blocks = pyvista.MultiBlock([None, self.mesh])
+        numpy.testing.assert_array_equal(self.deform(blocks, vectors="U")["v"], wanted["v"])
+        numpy.testing.assert_allclose(self.deform(self.mesh, density=["v"])["v"], wanted["v"], rtol=1e-6)
 
     # A surface moves as the volume does.
     def test_points(self):

@@ -261,8 +261,10 @@ class Pipeline(unittest.TestCase):
         for name, value in {"FieldIsInverse": "False", "OutsideMode": "keep", "Device": None}.items():
             with self.assertRaisesRegex(TypeError, f"{name} is "):
                 getattr(other, "Set" + name)(value)
-        with self.assertRaisesRegex(TypeError, "such as DeformVolume.KEEP"):
+        with self.assertRaisesRegex(TypeError, "Give DeformVolume.DISCARD or .*EXTRAPOLATE or DeformVolume.KEEP"):
             other.SetOutsideMode("keep")
+        with self.assertRaisesRegex(TypeError, "or DeformVolume.CUBIC_INTERPOLATION or"):
+            other.SetInterpolation("cubic")
 
     # The volume and the mesh are sent once, and displacements in each update.
     def test_only_changes_are_sent(self):
@@ -686,7 +688,9 @@ class Pipeline(unittest.TestCase):
         self.expect_shift()
         self.assertFalse(self.filter.GetOutputDataObject(0).GetPointData().HasArray("bits"))
         volume.GetPointData().RemoveArray("RTData")
-        self.expect_error("no numeric point array", make_field(self.SHIFT))
+        bits.SetName("cells")
+        volume.GetCellData().AddArray(bits)
+        self.expect_error('no numeric point array.* Its cell arrays: "cells".*cells_to_points', make_field(self.SHIFT))
 
     # VTK prints these errors, too.
     def test_misuse(self):
@@ -695,6 +699,7 @@ class Pipeline(unittest.TestCase):
             VTK_TRIANGLE_STRIP,
             vtkDataObject,
             vtkImageData,
+            vtkMultiBlockDataSet,
             vtkPolyData,
             vtkUnstructuredGrid,
         )
@@ -704,15 +709,6 @@ class Pipeline(unittest.TestCase):
         self.expect_error("no active vectors", vtkImageData())
         self.expect_error("no cells", vtkUnstructuredGrid())
         self.expect_error("vtkPolyData", vtkPolyData())
-        field = make_field(self.SHIFT)
-        field.AllocatePointGhostArray()
-        field.GetPointGhostArray().SetValue(0, 2)  # HIDDENPOINT
-        self.expect_error("hidden points", field)
-        field = make_field(self.SHIFT)
-        valid = numpy_to_vtk(numpy.arange(8, dtype=numpy.int8), deep=True)  # 0 at the first point
-        valid.SetName("vtkValidPointMask")
-        field.GetPointData().AddArray(valid)
-        self.expect_error("hidden points", field)
         self.filter.SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_CELLS, "vectors")
         self.expect_error("not chosen among the arrays of points", make_field(self.SHIFT))
         self.filter.SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "")
@@ -722,8 +718,20 @@ class Pipeline(unittest.TestCase):
         field.SetDimensions(3, 2, 2)
         self.expect_error('"vectors" has 8 tuples, but its grid needs 12', field)
         mesh = make_mesh(self.SHIFT)
+        mesh.GetCellData().AddArray(mesh.GetPointData().GetVectors())
         mesh.GetPointData().Initialize()
-        self.expect_error("no active vectors", mesh)
+        advice = 'Its cell arrays: "vectors".*vtkCellDataToPointData.*cell_data_to_point_data'
+        self.expect_error("no active vectors.*" + advice, mesh)
+        self.filter.SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "vectors")
+        self.expect_error('no numeric point array "vectors".*point arrays: none. ' + advice, mesh)
+        self.filter.SetInputArrayToProcess(0, 1, 0, vtkDataObject.FIELD_ASSOCIATION_POINTS, "")
+        self.filter.AddDensityArray("dose")
+        self.expect_error('no numeric point array "dose".*Its point arrays: "RTData"', make_mesh(self.SHIFT))
+        self.filter.ClearDensityArrays()
+        blocks = vtkMultiBlockDataSet()
+        blocks.SetBlock(0, make_field(self.SHIFT))
+        self.expect_error(r"a vtkImageData, as a block of a vtkMultiBlockDataSet.*blocks\[0\]", blocks)
+        self.expect_error("has no cells", vtkMultiBlockDataSet())
         # Colors and normals are not displacements, unless they are chosen.
         for name, kind, are_normals in (("rgb", numpy.uint8, False), ("N", float, True), ("Normals", float, False)):
             array = numpy_to_vtk(numpy.ones((8, 3), kind), deep=True)
