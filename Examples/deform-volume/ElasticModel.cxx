@@ -12,7 +12,9 @@
 
 #include <vtkAppendPolyData.h>
 #include <vtkBoundingBox.h>
+#include <vtkCellData.h>
 #include <vtkFiniteElementDeformation.h>
+#include <vtkIdList.h>
 #include <vtkMassSpringDeformation.h>
 #include <vtkMaterialFromVolume.h>
 #include <vtkNew.h>
@@ -26,39 +28,139 @@
 #include <cmath>
 #include <iomanip>
 #include <set>
+#include <vector>
 
 namespace
 {
-bool Fixes(const Fixation& fixation, const double point[3], vtkImageData* volume)
+// Gives tetrahedra the mean of the materials of their voxels. find(voxel): the index of a material.
+template <typename Find>
+vtkSmartPointer<vtkUnstructuredGrid> AddMeans(vtkMaterialFromVolume* filter, vtkImageData* volume,
+  vtkUnstructuredGrid* mesh, const Options& options, Messages& messages, const Find& find)
 {
-  if (fixation.Which == Fixation::Kind::Below)
+  vtkNew<vtkUnsignedCharArray> indices;
+  indices->SetName("deform-volume: materials"); // arrays of files are unlikely to have this name
+  indices->SetNumberOfValues(volume->GetNumberOfPoints());
+  for (vtkIdType voxel = 0; voxel < volume->GetNumberOfPoints(); ++voxel)
   {
-    return point[2] <= fixation.Value;
+    indices->SetValue(voxel, static_cast<unsigned char>(find(voxel)));
   }
-  if (fixation.Which == Fixation::Kind::Box)
-  {
-    return vtkBoundingBox(fixation.Bounds.data()).ContainsPoint(point) != 0;
-  }
-  const vtkIdType voxel = volume->FindPoint(const_cast<double*>(point));
-  return voxel >= 0 &&
-    volume->GetPointData()->GetScalars()->GetComponent(voxel, 0) == fixation.Value;
+  vtkNew<vtkImageData> image;
+  image->ShallowCopy(volume);
+  image->GetPointData()->AddArray(indices);
+  filter->SetInputData(mesh);
+  filter->SetVolumeData(image);
+  filter->SetMaterialArrayName(indices->GetName());
+  const ProgressBar bar(filter, "materials", !options.Quiet);
+  filter->Update();
+  messages.Check("cannot find the materials of the mesh");
+  return filter->GetOutput();
 }
 
-void AddFixedNodes(
-  const Options& options, vtkImageData* volume, vtkUnstructuredGrid* mesh, Messages& messages)
+// Fixes nodes whose nearest voxel has a label of --fix, and the nodes of tetrahedra of whose voxels
+// at least half have one. Warns if much of the tissue with these labels can move.
+void FixLabels(const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh,
+  vtkUnsignedCharArray* fixed, Messages& messages)
 {
-  vtkNew<vtkUnsignedCharArray> fixed;
-  fixed->SetName("Fixed");
-  fixed->SetNumberOfTuples(mesh->GetNumberOfPoints());
-  fixed->Fill(0.0);
+  std::vector<double> labels;
   for (const Fixation& fixation : options.Fixations)
   {
-    bool isAny = false;
-    for (vtkIdType node = 0; node < mesh->GetNumberOfPoints(); ++node)
+    if (fixation.Which == Fixation::Kind::Label)
     {
-      double point[3];
-      mesh->GetPoint(node, point);
-      if (Fixes(fixation, point, volume))
+      labels.push_back(fixation.Value);
+    }
+  }
+  if (labels.empty())
+  {
+    return;
+  }
+  vtkDataArray* values = volume.GetLabels();
+  std::vector<bool> isUsed(labels.size(), false);
+  const auto has = [&](vtkIdType voxel)
+  {
+    const auto found = std::find(labels.begin(), labels.end(), values->GetComponent(voxel, 0));
+    return found != labels.end() && (isUsed[found - labels.begin()] = true);
+  };
+  // The mean density of a tetrahedron minus 1 is the share of its voxels with a label.
+  vtkNew<vtkMaterialFromVolume> filter;
+  filter->SetMaterial(0, 1.0, 0.0, 1.0);
+  filter->SetMaterial(1, 1.0, 0.0, 2.0);
+  const auto means = AddMeans(filter, volume.Image, mesh, options, messages, has);
+  vtkDataArray* densities = means->GetCellData()->GetArray("Density");
+  const auto unused = std::find(isUsed.begin(), isUsed.end(), false);
+  if (unused != isUsed.end())
+  {
+    double range[2];
+    values->GetFiniteRange(range, 0);
+    throw Failure(MakeText("--fix label:", labels[unused - isUsed.begin()], ": no voxel of ",
+      volume.Labels ? "--label-volume" : "the volume", " has this value. Values are ", range[0],
+      " to ", range[1]));
+  }
+  for (vtkIdType node = 0; node < mesh->GetNumberOfPoints(); ++node)
+  {
+    const vtkIdType voxel = volume.Image->FindPoint(mesh->GetPoint(node));
+    if (voxel >= 0 && has(voxel))
+    {
+      fixed->SetValue(node, 1);
+    }
+  }
+  vtkNew<vtkIdList> nodes;
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    mesh->GetCellPoints(cell, nodes);
+    for (vtkIdType i = 0; i < nodes->GetNumberOfIds() && densities->GetComponent(cell, 0) >= 1.5;
+         ++i)
+    {
+      fixed->SetValue(nodes->GetId(i), 1);
+    }
+  }
+  double all = 0.0;
+  double loose = 0.0;
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    mesh->GetCellPoints(cell, nodes);
+    const double part = (densities->GetComponent(cell, 0) - 1.0) * GetVolume(mesh, cell);
+    all += part;
+    const bool isFixed = std::all_of(
+      nodes->begin(), nodes->end(), [fixed](vtkIdType node) { return fixed->GetValue(node) != 0; });
+    loose += isFixed ? 0.0 : part;
+  }
+  constexpr double much = 0.2;
+  if (!(loose < much * all))
+  {
+    messages.Warn(MakeText(std::setprecision(3), all > 0.0 ? 100.0 * loose / all : 100.0,
+      " % of the tissue with the labels of --fix is in tetrahedra with nodes that are not fixed, "
+      "and can move. Use smaller tetrahedra: ",
+      options.HasLattice() ? "more nodes of --lattice." : "a smaller --edge-length."));
+  }
+}
+
+// Whether a node lies below the plane or in the box. tolerance: a length that is more than the
+// rounding errors of coordinates.
+bool Fixes(const Fixation& fixation, const double point[3], double tolerance)
+{
+  vtkBoundingBox box(fixation.Bounds.data());
+  box.Inflate(tolerance);
+  return fixation.Which == Fixation::Kind::Below ? point[2] <= fixation.Value + tolerance
+                                                 : box.ContainsPoint(point) != 0;
+}
+
+void AddFixedNodes(const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh,
+  Messages& messages, Deformation& deformation)
+{
+  const vtkIdType number = mesh->GetNumberOfPoints();
+  vtkNew<vtkUnsignedCharArray> fixed;
+  fixed->SetName("Fixed");
+  fixed->SetNumberOfTuples(number);
+  fixed->Fill(0.0);
+  const double* spacing = volume.Image->GetSpacing();
+  const double tolerance =
+    1e-3 * std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
+  for (const Fixation& fixation : options.Fixations)
+  {
+    bool isAny = fixation.Which == Fixation::Kind::Label; // see FixLabels()
+    for (vtkIdType node = 0; node < number && fixation.Which != Fixation::Kind::Label; ++node)
+    {
+      if (Fixes(fixation, mesh->GetPoint(node), tolerance))
       {
         fixed->SetValue(node, 1);
         isAny = true;
@@ -70,7 +172,14 @@ void AddFixedNodes(
         " fixes no node of the mesh. Positions are world coordinates of the volume");
     }
   }
+  FixLabels(options, volume, mesh, fixed, messages);
   mesh->GetPointData()->AddArray(fixed);
+  if (!options.Fixations.empty())
+  {
+    const unsigned char* values = fixed->GetPointer(0);
+    deformation.Fixed = MakeText(
+      std::count(values, values + number, 1), " of ", number, " nodes at corners of tetrahedra");
+  }
   // With --pull this is an error of the model.
   if (options.Pulls.empty() && fixed->GetRange()[0] > 0.0)
   {
@@ -79,10 +188,12 @@ void AddFixedNodes(
   }
 }
 
-void WarnOfUnusedMaterials(const Options& options, vtkDataArray* values, Messages& messages)
+void WarnOfUnusedMaterials(const Options& options, const Volume& volume, Messages& messages)
 {
   for (const MaterialOfValues& material : options.Materials)
   {
+    vtkDataArray* values =
+      material.IsOfLabel ? volume.GetLabels() : volume.Image->GetPointData()->GetScalars();
     bool isUsed = false;
     for (vtkIdType voxel = 0; voxel < values->GetNumberOfTuples() && !isUsed; ++voxel)
     {
@@ -93,44 +204,53 @@ void WarnOfUnusedMaterials(const Options& options, vtkDataArray* values, Message
     {
       double range[2];
       values->GetFiniteRange(range, 0);
-      messages.Warn(
-        MakeText("No voxel has a value of the range ", material.Minimum, ":", material.Maximum,
-          " of --material. Values of the volume are ", range[0], " to ", range[1], "."));
+      messages.Warn(material.IsOfLabel
+          ? MakeText("No voxel has the label ", material.Minimum, " of --material. Labels are ",
+              range[0], " to ", range[1], ".")
+          : MakeText("No voxel has a value of the range ", material.Minimum, ":", material.Maximum,
+              " of --material. Values of the volume are ", range[0], " to ", range[1], "."));
     }
   }
 }
 
 // Gives the tetrahedra the materials of their voxels, by --material.
 void AddMaterials(
-  const Options& options, vtkImageData* volume, vtkUnstructuredGrid* mesh, Messages& messages)
+  const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh, Messages& messages)
 {
   if (options.Materials.empty())
   {
     return;
   }
-  WarnOfUnusedMaterials(options, volume->GetPointData()->GetScalars(), messages);
+  WarnOfUnusedMaterials(options, volume, messages);
   constexpr int defaultMaterial = 255;
   vtkNew<vtkMaterialFromVolume> filter;
-  filter->SetInputData(mesh);
-  filter->SetVolumeData(volume);
   filter->ClearMaterials();
   filter->SetMaterial(defaultMaterial, options.YoungModulus, options.PoissonRatio, options.Density);
   filter->SetDefaultMaterial(defaultMaterial);
-  const char* name = volume->GetPointData()->GetScalars()->GetName();
-  filter->SetMaterialArrayName(name ? name : "");
   int index = 0;
   for (const MaterialOfValues& material : options.Materials)
   {
     filter->SetMaterial(index, material.YoungModulus,
       material.PoissonRatio.value_or(options.PoissonRatio),
       material.Density.value_or(options.Density));
-    filter->AddMaterialRange(material.Minimum, material.Maximum, index);
     ++index;
   }
-  const ProgressBar bar(filter, "materials", !options.Quiet);
-  filter->Update();
-  messages.Check("cannot find the materials of the mesh");
-  mesh->ShallowCopy(filter->GetOutput());
+  vtkDataArray* values = volume.Image->GetPointData()->GetScalars();
+  vtkDataArray* labels = volume.GetLabels();
+  mesh->ShallowCopy(AddMeans(filter, volume.Image, mesh, options, messages,
+    [&](vtkIdType voxel)
+    {
+      for (int i = 0; i < index; ++i)
+      {
+        const MaterialOfValues& material = options.Materials[i];
+        const double value = (material.IsOfLabel ? labels : values)->GetComponent(voxel, 0);
+        if (value >= material.Minimum && value < material.Maximum)
+        {
+          return i;
+        }
+      }
+      return defaultMaterial;
+    }));
 }
 
 // Returns one surface of all sheets of --cut.
@@ -202,8 +322,8 @@ void SetUp(vtkElasticDeformation* model, const Options& options, vtkUnstructured
 void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh,
   Messages& messages, Deformation& deformation, const FrameTaker& takeFrame)
 {
-  AddFixedNodes(options, volume.Image, mesh, messages);
-  AddMaterials(options, volume.Image, mesh, messages);
+  AddFixedNodes(options, volume, mesh, messages, deformation);
+  AddMaterials(options, volume, mesh, messages);
   // update(part): moves the handles by this fraction of their displacements, or simulates this
   // fraction of --duration.
   const auto run = [&](vtkElasticDeformation* model, const auto& update)

@@ -21,7 +21,7 @@ struct Fixation
   {
     Box,   // nodes within Bounds: x min, x max, y min, y max, z min, z max
     Below, // nodes whose z is at most Value
-    Label  // nodes whose nearest voxel has the value Value
+    Label  // the tissue of voxels with the label Value, see FixLabels() in ElasticModel.cxx
   };
   Kind Which = Kind::Box;
   std::array<double, 6> Bounds{};
@@ -32,6 +32,7 @@ struct Fixation
 /// The material of voxels whose value is at least Minimum and less than Maximum.
 struct MaterialOfValues
 {
+  bool IsOfLabel = false; // whether these are values of Volume::GetLabels()
   double Minimum = 0.0;
   double Maximum = 0.0;
   double YoungModulus = 0.0;

@@ -220,6 +220,7 @@ void PrintInputs(const Volume& volume, const LabelVolume& labels, const Deformat
     print("edges      ", edges);
   }
   print("body       ", deformation.Body);
+  print("fixed      ", deformation.Fixed);
   print("moved      ", deformation.Motion);
   print("cut        ", deformation.Cut);
   for (const std::string& tool : tools)
@@ -344,6 +345,7 @@ void DeformVolume(const Options& options, Messages& messages)
   volume.Axes =
     ResolveSpace("--volume-space", options.VolumeSpace, options.Volume, volume.Axes, messages);
   const LabelVolume labels(options, volume, messages);
+  volume.Labels = labels.GetScalars();
   Volume reference;
   if (!options.Reference.empty())
   {

@@ -350,6 +350,10 @@ void CheckOptions(const Options& options)
   CheckDeformation(options);
   CheckResampler(options, !options.Field.empty() || options.Model == "chainmail");
   CheckPoints(options);
+  if (!options.LabelVolume.empty() && options.LabelOutputs.empty() && !options.UsesLabels())
+  {
+    throw UsageError("--label-volume requires --label-output, --fix label:N or --material label:N");
+  }
   if (!options.MeshSpace.empty() && options.Mesh.empty() && options.Cuts.empty() &&
     std::all_of(options.Points.begin(), options.Points.end(), IsLandmarkFile))
   {

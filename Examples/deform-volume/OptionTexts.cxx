@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <vector>
 
 namespace
@@ -126,8 +127,8 @@ MaterialOfValues ParseMaterial(const std::string& text)
 {
   const std::size_t colon = std::min(text.find(':'), text.size());
   const std::size_t equals = std::min(text.find('=', colon), text.size());
-  const std::string shape = "TISSUE, MINIMUM:MAXIMUM=TISSUE or MINIMUM:MAXIMUM=E[,NU[,DENSITY]], "
-                            "where TISSUE is one of " +
+  const std::string shape = "TISSUE, VOXELS=TISSUE or VOXELS=E[,NU[,DENSITY]], where VOXELS is "
+                            "MINIMUM:MAXIMUM or label:N, and TISSUE is one of " +
     GetTissues();
   if (equals == text.size())
   {
@@ -140,8 +141,10 @@ MaterialOfValues ParseMaterial(const std::string& text)
     return ParseNumbers<double, 1>("--material", part, expected, text)[0];
   };
   MaterialOfValues material;
-  material.Minimum = number(text.substr(0, colon));
-  material.Maximum = number(text.substr(colon + 1, equals - colon - 1));
+  material.IsOfLabel = text.compare(0, colon, "label") == 0;
+  const double last = number(text.substr(colon + 1, equals - colon - 1));
+  material.Minimum = material.IsOfLabel ? last : number(text.substr(0, colon));
+  material.Maximum = material.IsOfLabel ? std::nextafter(last, HUGE_VAL) : last;
   if (!(material.Minimum < material.Maximum))
   {
     throw UsageError("--material " + text + ": the minimum must be less than the maximum");

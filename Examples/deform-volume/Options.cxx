@@ -206,7 +206,8 @@ void AddElasticModel(CLI::App& program, Options& options)
   OptionGroup group(program, "With --model fem or mass-spring");
   group.AddList("--fix", options.Fixations, ParseFixation, "box:X0,X1,Y0,Y1,Z0,Z1|below:Z|label:N",
     "Fixed nodes: nodes in a box, nodes with a z coordinate of at most Z, or nodes in voxels of "
-    "the value N. May be given several times");
+    "the label N and nodes of tetrahedra of whose voxels at least half have it. Labels are those "
+    "of --label-volume, or else the values of VOLUME. May be given several times");
   group
     .Add("--gravity", options.Gravity, ParseGravity, "X,Y,Z", "Acceleration of gravity, in m/s^2")
     ->default_str("0,0,0");
@@ -225,11 +226,12 @@ void AddElasticModel(CLI::App& program, Options& options)
         options.Materials.push_back(ParseMaterial(text));
       }
     },
-    "TISSUE|MINIMUM:MAXIMUM=TISSUE|MINIMUM:MAXIMUM=E[,NU[,DENSITY]]",
-    "Material of voxels whose value is at least MINIMUM and less than MAXIMUM: Young modulus E "
-    "(Pa), Poisson ratio NU and DENSITY (kg/m^3), or the values of a TISSUE. Each tetrahedron "
-    "gets the mean of its voxels. If ranges overlap, the first one is used. Voxels in no range "
-    "get the TISSUE that is given without a range, or else --young, --poisson and --density. "
+    "TISSUE|VOXELS=TISSUE|VOXELS=E[,NU[,DENSITY]]",
+    "Material of voxels: Young modulus E (Pa), Poisson ratio NU and DENSITY (kg/m^3), or the "
+    "values of a TISSUE. VOXELS is MINIMUM:MAXIMUM for values of at least MINIMUM and less than "
+    "MAXIMUM, or label:N for a label, as in --fix. Each tetrahedron gets the mean of its voxels. "
+    "If several apply to a voxel, the first one is used. Other voxels get the TISSUE that is "
+    "given without VOXELS, or else --young, --poisson and --density. "
     "Tissues: " +
       GetTissues() + ". May be given several times");
   addNumber("--young", options.YoungModulus, "Young modulus, in Pa");
@@ -335,7 +337,7 @@ void AddDeformation(CLI::App& program, Options& options)
     .AddNumber("--edge-length", options.EdgeLength,
       "Target length of the edges of the tetrahedra, in world units. 0: a twentieth of the "
       "diagonal of the volume, or with --model fem a tenth, because fem adds nodes in the middle "
-      "of edges. Within a --push, edges are not longer than a sixth of its radius")
+      "of edges. Within a --push, edges are not longer than a sixth of its radius.")
     ->capture_default_str()
     ->check(NotNegative);
   tetgen
@@ -366,7 +368,6 @@ void AddDependencies(CLI::App& program)
   // CheckModelOptions() checks the other options of --model.
   needs("--model", { "--pull", "--frames", "--movie" });
   needs("--label-volume", { "--label-output" });
-  needs("--label-output", { "--label-volume" });
   needs("--points", { "--points-output" });
   needs("--points-output", { "--points" });
   needs("--movie", { "--frames" });
@@ -521,6 +522,14 @@ bool Options::WritesResult() const
     [](const NamedFile& output) { return output.Option != "--write-mesh"; });
 }
 
+bool Options::UsesLabels() const
+{
+  return std::any_of(this->Fixations.begin(), this->Fixations.end(),
+           [](const Fixation& fixation) { return fixation.Which == Fixation::Kind::Label; }) ||
+    std::any_of(this->Materials.begin(), this->Materials.end(),
+      [](const MaterialOfValues& material) { return material.IsOfLabel; });
+}
+
 bool Options::AreLabels(vtkDataArray* array) const
 {
   const std::vector<std::string>& names = this->CategoricalArrays;
@@ -563,7 +572,8 @@ std::optional<int> ParseCommandLine(int argc, char* argv[], Options& options)
       (HasITK ? ", some .nrrd" : "") + "): lps or ras, see --field-space");
   general.Add("--label-volume", options.LabelVolume, "FILE",
     "Labels of the voxels of VOLUME, on the same grid, in one of the formats of VOLUME. Labels "
-    "must be integers. They are deformed with VOLUME, and not interpolated");
+    "must be integers. They are deformed with VOLUME, and not interpolated. Labels of --fix and "
+    "--material are those of this file");
   general.AddList("--points", options.Points, "FILE",
     std::string("Points, surfaces or landmarks that belong to VOLUME: ") + PointFormats +
       ". They move with the tissue, from VOLUME (the moving image) to the result (the fixed "

@@ -105,6 +105,8 @@ struct Options
   bool HasTools() const { return !this->Cuts.empty() || !this->Carvings.empty(); }
   /// Whether --cut cuts the mesh of a model instead of the volume.
   bool CutsMesh() const { return !this->Cuts.empty() && this->HasElasticModel(); }
+  /// Whether --fix or --material uses labels.
+  bool UsesLabels() const;
   bool HasLattice() const { return this->Lattice[0] > 0; }
   /// Whether the model adds nodes in the middle of edges.
   bool HasMidSideNodes() const { return this->Model == "fem"; }

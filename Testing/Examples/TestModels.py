@@ -11,9 +11,11 @@ import numpy
 from MeshFiles import make_handles, to_vtk
 from Volumes import begin_test, call, get_values, make_ball, read_vti, write_vti
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersCore import vtkProbeFilter
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
-from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridReader
 
 program, path = begin_test("Models")
 volume = make_ball()
@@ -59,6 +61,7 @@ fails(2, "--material liver and --young set the same property", "--model", "fem",
       "--young", "5000")
 fails(2, "--material fat: --material liver already sets the tissue of the body", "--model", "fem", *lattice, *fix,
       "--material", "liver", "--material", "fat")
+fails(2, "--material label:x", "--model", "fem", *lattice, *fix, "--material", "label:x=bone")
 fails(2, "--material requires --model", *lattice, "--push", "9,20,25,3,0,0,15", "--material", "liver")
 fails(1, "Young modulus of material 0", "--model", "fem", *lattice, *fix, *gravity, "--material", "0:9=-1")
 fails(2, "--material requires", "--model", "chainmail", *pull, "--material", "0:9=1")
@@ -192,6 +195,93 @@ def check_materials_and_cut():
     assert again.shape != expected.shape or (again != expected).any()
 
 
+def make_bar():
+    """Writes a bar of three labels in air: an image of the labels, one of a hundred times the labels, and one of 100.
+    Returns its voxels as an array [z, y, x]."""
+    labels = numpy.zeros((48, 24, 24), numpy.int16)
+    for label, (first, last) in {3: (4, 20), 2: (20, 28), 1: (28, 44)}.items():
+        labels[first:last, 6:18, 6:18] = label
+    for name, values in (("labels.vti", labels), ("hundreds.vti", 100 * labels), ("bar.vti", 100 * (labels > 0))):
+        image = vtkImageData()
+        image.SetDimensions(24, 24, 48)
+        image.GetPointData().SetScalars(to_vtk("Values", values.astype(numpy.int16).ravel()))
+        write_vti(image, path(name))
+    return labels
+
+
+def read_vtu(name):
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(path(name))
+    reader.Update()
+    return reader.GetOutput()
+
+
+def get_corners(mesh):
+    """Returns the nodes at the corners of each tetrahedron with ten nodes."""
+    return vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 10)[:, :4]
+
+
+def check_fixed_labels():
+    """Checks that labels hold their tissue, and that they come from --label-volume if there is one."""
+    labels = make_bar()
+    top = ("--pull", "11.5,11.5,43,4,0,0,5")
+    arguments = ("--tetgen", "--isovalue", "50", "--edge-length", "3.5", "--model", "fem", *top)
+    values = ("--fix", "label:300", "--material", "150:250=2000")
+    output, errors = call(program, path("hundreds.vti"), *arguments, *values, "-o", path("values.vti"),
+                          "--write-mesh", path("held.vtu"))
+    assert errors == "", errors
+    held = read_vtu("held.vtu")
+    found = re.search(r"fixed +(\d+) of (\d+) nodes", output)
+    corners = numpy.unique(get_corners(held))
+    fixed = vtk_to_numpy(held.GetPointData().GetArray("Fixed"))[corners] != 0
+    assert found and [int(text) for text in found.groups()] == [fixed.sum(), len(corners)], (output, fixed.sum())
+    # Voxels in tetrahedra whose nodes are all fixed do not move. Without a warning these are at least 80 %.
+    places = vtkPoints()
+    places.SetData(to_vtk("", numpy.argwhere(labels == 3)[:, ::-1].astype(float)))
+    tissue = vtkPolyData()
+    tissue.SetPoints(places)
+    probe = vtkProbeFilter()
+    probe.SetInputData(tissue)
+    probe.SetSourceData(held)
+    probe.Update()
+    moves = numpy.linalg.norm(vtk_to_numpy(probe.GetOutput().GetPointData().GetArray("Displacement")), axis=1)
+    assert (moves > 1e-6).mean() < 0.2, (moves > 1e-6).mean()
+    # A fixed node beyond the label is in a tetrahedron with it, whose edges are less than twice as long as the target.
+    heights = numpy.array([held.GetPoint(node)[2] for node in corners])
+    assert not fixed[heights > 20 + 7].any()
+
+    # The same labels in a file of their own.
+    beside = (path("bar.vti"), "--label-volume", path("labels.vti"), *arguments)
+    call(program, *beside, "--fix", "label:3", "--material", "label:2=2000", "-o", path("o.vti"), "--write-mesh",
+         path("beside.vtu"))
+    for name in ("Fixed", "Displacement"):
+        numpy.testing.assert_array_equal(*(vtk_to_numpy(mesh.GetPointData().GetArray(name))
+                                           for mesh in (held, read_vtu("beside.vtu"))))
+    fails_beside = functools.partial(Messages.fails, program, 1)
+    output = ("-o", path("none.vti"))
+    fails_beside("label:7: no voxel of --label-volume has this value. Values are 0 to 3", *beside, "--fix", "label:7",
+                 *output)
+    fails_beside("label:3: no voxel of the volume has this value. Values are 0 to 100", path("bar.vti"), *arguments,
+                 "--fix", "label:3", *output)
+    Messages.warns(program, "No voxel has the label 9 of --material. Labels are 0 to 3", *beside, "--fix", "label:3",
+                   "--material", "label:9=bone", *output)
+    Messages.warns(program, "% of the tissue with the labels of --fix is in tetrahedra with nodes that are not fixed",
+                   path("hundreds.vti"), "--lattice", "3,3,5", "--model", "fem", *top, "--fix", "below:1", "--fix",
+                   "label:200", *output)
+
+
+def check_rounded_positions():
+    """Checks that --fix includes nodes whose positions are rounded to floats, as those of NIfTI files are."""
+    image = make_ball(spacing=[float(numpy.float32(1.2))] * 3, origin=(0, 0, 0))
+    write_vti(image, path("rounded.vti"))
+    assert image.GetSpacing()[2] * 3 > 3.6
+    # Two layers of a lattice with the spacing 3.6.
+    for kind in ("below:3.6", "box:-1,99,-1,99,0,3.6"):
+        output, _ = call(program, path("rounded.vti"), "--model", "fem", "--lattice", "9,8,7", "--fix", kind, *gravity,
+                         "-o", path("o.vti"))
+        assert "fixed      144 of 504 nodes" in output, output
+
+
 def check_results_without_use():
     """Checks simulations without an equilibrium, without motion, and with materials that no voxel has."""
     arguments = (path("in.vti"), "--model", "fem", *lattice, "--gravity", "0,0,-9.81", "-o", path("useless.vti"))
@@ -204,6 +294,8 @@ def check_results_without_use():
 
 
 check_materials_and_cut()
+check_fixed_labels()
+check_rounded_positions()
 check_results_without_use()
 check_tissues()
 check("fem", deformvolume_vtk.vtkFiniteElementDeformation(), "to equilibrium, strain energy")

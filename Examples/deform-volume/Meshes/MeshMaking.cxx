@@ -19,7 +19,9 @@
 #include <vtkMath.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPoints.h>
 #include <vtkTetGenMesher.h>
+#include <vtkTetra.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
@@ -166,6 +168,17 @@ void CheckMeshOptions(const Options& options, const Deformation& deformation)
     CheckResampler(options, true);
   }
 }
+}
+
+double GetVolume(vtkUnstructuredGrid* mesh, vtkIdType tetrahedron)
+{
+  vtkPoints* points = mesh->GetCell(tetrahedron)->GetPoints();
+  double corners[4][3];
+  for (int i = 0; i < 4; ++i)
+  {
+    points->GetPoint(i, corners[i]);
+  }
+  return std::abs(vtkTetra::ComputeVolume(corners[0], corners[1], corners[2], corners[3]));
 }
 
 Deformation MakeDeformation(const Options& options, const Volume& volume,

@@ -13,6 +13,7 @@
 #include <vector>
 
 class Messages;
+class vtkUnstructuredGrid;
 
 /// The deformation of the volume, and descriptions of it that the program prints.
 struct Deformation
@@ -28,6 +29,8 @@ struct Deformation
   /// Result of a model, and of the cuts in its mesh.
   std::string Motion;
   std::string Cut;
+  /// Number of fixed nodes of a model.
+  std::string Fixed;
   /// Numbers of voxels of the body that was meshed, and lengths of edges.
   std::string Body;
   std::vector<std::string> Edges;
@@ -38,6 +41,9 @@ struct Deformation
 /// model, including the last one. Throws a Failure if that is not possible.
 Deformation MakeDeformation(const Options& options, const Volume& volume, vtkImageData* grid,
   Messages& messages, const FrameTaker& takeFrame);
+
+/// Returns the volume of a tetrahedron of a mesh.
+double GetVolume(vtkUnstructuredGrid* mesh, vtkIdType tetrahedron);
 
 /// Sets the deformation of a vtkDeformVolumeFilter or vtkDeformGeometryFilter, and the options that
 /// apply to it.

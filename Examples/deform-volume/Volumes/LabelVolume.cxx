@@ -178,6 +178,13 @@ LabelVolume::LabelVolume(const Options& options, const Volume& volume, Messages&
   }
 }
 
+vtkDataArray* LabelVolume::GetScalars() const
+{
+  const auto found = std::find_if(this->Arrays.begin(), this->Arrays.end(),
+    [this](const LabelArray& array) { return array.Name == this->ActiveName; });
+  return found == this->Arrays.end() ? nullptr : found->Values.Get();
+}
+
 vtkSmartPointer<vtkImageData> LabelVolume::AddTo(
   vtkImageData* volume, vtkDeformVolumeFilter* filter) const
 {

@@ -23,6 +23,9 @@ public:
   /// Whether there are no labels.
   bool IsEmpty() const { return this->Arrays.empty(); }
 
+  /// The labels, or the active array of several; null if there are no labels.
+  vtkDataArray* GetScalars() const;
+
   /// Returns a copy of the volume with the labels, which become categorical arrays of the filter;
   /// the volume itself if there are no labels.
   vtkSmartPointer<vtkImageData> AddTo(vtkImageData* volume, vtkDeformVolumeFilter* filter) const;

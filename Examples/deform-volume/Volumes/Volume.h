@@ -2,10 +2,12 @@
 #ifndef DeformVolumeVolume_h
 #define DeformVolumeVolume_h
 
+#include <vtkDataArray.h>
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNIFTIImageHeader.h>
+#include <vtkPointData.h>
 #include <vtkSmartPointer.h>
 
 #include <map>
@@ -58,6 +60,14 @@ struct Volume
   std::map<std::string, std::string> Fields;
   /// The matrix of an NRRD file from components of vectors to the world. Null for other formats.
   vtkSmartPointer<vtkMatrix3x3> MeasurementFrame;
+  /// The labels of --label-volume; null: there are none.
+  vtkSmartPointer<vtkDataArray> Labels;
+
+  /// Returns the values that label:N refers to: Labels, or else the scalars.
+  vtkDataArray* GetLabels() const
+  {
+    return this->Labels ? this->Labels.Get() : this->Image->GetPointData()->GetScalars();
+  }
 };
 
 #endif
