@@ -180,8 +180,9 @@ public:
   ///@{
   /**
    * Set/Get the distance by which the mesh extends beyond the body, as a multiple of the target
-   * edge length, so that the body's skin lies well inside the mesh and is deformed with it. Volumes
-   * only. Default: 0.5, range 0 to 10.
+   * edge length, so that the body's skin lies well inside the mesh and is deformed with it. A
+   * simulation of the mesh simulates the margin as well: set 0.1 for it (Documents/physics.md).
+   * Volumes only. Default: 0.5, range 0 to 10.
    */
   vtkSetClampMacro(Margin, double, 0.0, 10.0);
   vtkGetMacro(Margin, double);

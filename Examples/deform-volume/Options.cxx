@@ -337,7 +337,8 @@ void AddDeformation(CLI::App& program, Options& options)
     .AddNumber("--edge-length", options.EdgeLength,
       "Target length of the edges of the tetrahedra, in world units. 0: a twentieth of the "
       "diagonal of the volume, or with --model fem a tenth, because fem adds nodes in the middle "
-      "of edges. Within a --push, edges are not longer than a sixth of its radius.")
+      "of edges. Within a --push, edges are not longer than a sixth of its radius. The mesh "
+      "extends half an edge length beyond the body, or with --model fem a tenth")
     ->capture_default_str()
     ->check(NotNegative);
   tetgen

@@ -221,6 +221,27 @@ def get_corners(mesh):
     return vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 10)[:, :4]
 
 
+def check_size_of_body():
+    """Checks that the mesh of a body that is simulated is hardly larger than the body."""
+    make_bar()
+    body = 12 * 12 * 40
+    arguments = (path("bar.vti"), "--tetgen", "--model", "fem", "--fix", "below:6", "--gravity", "1,0,0", "-o",
+                 path("o.vti"), "--write-mesh", path("bar.vtu"))
+    output, errors = call(program, *arguments, "--edge-length", "5")
+    simulated = read_vtu("bar.vtu")
+    points = vtk_to_numpy(simulated.GetPoints().GetData())[get_corners(simulated)]
+    volume_of_mesh = numpy.abs(numpy.linalg.det(points[:, 1:] - points[:, :1])).sum() / 6
+    found = re.search(r"; mesh (\S+) ml, body (\S+) ml", output)
+    assert found and float(found.group(2)) == body / 1000, output
+    assert abs(float(found.group(1)) * 1000 - volume_of_mesh) < 1e-3 * volume_of_mesh, (output, volume_of_mesh)
+    # A tenth of an edge and half a voxel on each side.
+    assert 0.9 * body < volume_of_mesh < 14 * 14 * 42 and errors == "", (volume_of_mesh, errors)
+    coarse = (*arguments, "--edge-length", "12")
+    Messages.warns(program, "times the volume of the body", *coarse)
+    _, errors = call(program, *coarse, "--material", "-1:50=100,0.3,1")
+    assert errors == "", errors
+
+
 def check_fixed_labels():
     """Checks that labels hold their tissue, and that they come from --label-volume if there is one."""
     labels = make_bar()
@@ -294,6 +315,7 @@ def check_results_without_use():
 
 
 check_materials_and_cut()
+check_size_of_body()
 check_fixed_labels()
 check_rounded_positions()
 check_results_without_use()

@@ -25,6 +25,7 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 
@@ -47,6 +48,44 @@ double GetEdgeLength(const Options& options, vtkImageData* volume)
     square += length * length;
   }
   return partOfDiagonal * std::sqrt(square);
+}
+
+// Whether voxels around the body have a material of their own. Air has the least value.
+bool HasMaterialOfAir(const Options& options, vtkDataArray* values)
+{
+  double range[2];
+  values->GetFiniteRange(range, 0);
+  return std::any_of(options.Materials.begin(), options.Materials.end(),
+    [&](const MaterialOfValues& material)
+    {
+      const double air = material.IsOfLabel ? 0.0 : range[0];
+      return material.Minimum <= air && air < material.Maximum;
+    });
+}
+
+// Describes how large the simulated body is, and warns if it is much larger than the voxels show.
+void CompareVolumes(const Options& options, vtkImageData* volume, vtkTetGenMesher* mesher,
+  Messages& messages, Deformation& deformation)
+{
+  constexpr double cubicMillimeters = 1e3; // of a milliliter
+  const double* spacing = volume->GetSpacing();
+  const double body = std::abs(spacing[0] * spacing[1] * spacing[2]) / cubicMillimeters *
+    double(mesher->GetNumberOfBodyVoxels() - mesher->GetNumberOfBodyVoxelsOutside());
+  double mesh = 0.0;
+  for (vtkIdType cell = 0; cell < mesher->GetOutput()->GetNumberOfCells(); ++cell)
+  {
+    mesh += GetVolume(mesher->GetOutput(), cell) / cubicMillimeters;
+  }
+  deformation.Body += MakeText(std::setprecision(4), "; mesh ", mesh, " ml, body ", body, " ml");
+  constexpr double tooLarge = 1.3;
+  if (mesh > tooLarge * body && !HasMaterialOfAir(options, volume->GetPointData()->GetScalars()))
+  {
+    messages.Warn(MakeText(std::setprecision(3), "The mesh has ", mesh / body,
+      " times the volume of the body, because tetrahedra are large, or because it fills cavities "
+      "of the body. All of it is simulated as tissue. Use a smaller --edge-length, and give voxels "
+      "that are no tissue a soft and light --material, such as MINIMUM:MAXIMUM=100,0.3,1 for "
+      "air."));
+  }
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> Mesh(
@@ -93,6 +132,11 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
     }
   }
   mesher->SetRadiusEdgeRatio(options.RadiusEdgeRatio);
+  if (options.HasElasticModel())
+  {
+    // With the default, the simulated body would be half an edge length larger on each side.
+    mesher->SetMargin(0.1);
+  }
   mesher->SetTetGenExecutable(options.TetGenExecutable);
   const ProgressBar bar(mesher, "meshing", !options.Quiet);
   mesher->Update();
@@ -100,6 +144,10 @@ vtkSmartPointer<vtkUnstructuredGrid> Mesh(
   deformation.Body = MakeText(mesher->GetNumberOfBodyVoxels(), " voxels in ",
     mesher->GetNumberOfPieces(), " pieces, ", mesher->GetNumberOfBodyVoxelsOutside(),
     " voxels outside the mesh; ", mesher->GetNumberOfSpeckVoxels(), " voxels in specks left out");
+  if (options.HasElasticModel())
+  {
+    CompareVolumes(options, volume, mesher, messages, deformation);
+  }
   deformation.Edges.push_back(MakeText(std::setprecision(3), "about ",
     mesher->GetUsedTargetEdgeLength(), options.Pushes.empty() ? "" : " away from pushes"));
   if (!isOfLabels)
