@@ -13,10 +13,12 @@
 #include <vtkAppendPolyData.h>
 #include <vtkBoundingBox.h>
 #include <vtkCellData.h>
+#include <vtkDoubleArray.h>
 #include <vtkFiniteElementDeformation.h>
 #include <vtkIdList.h>
 #include <vtkMassSpringDeformation.h>
 #include <vtkMaterialFromVolume.h>
+#include <vtkMath.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkStaticCellLocator.h>
@@ -307,6 +309,20 @@ std::string DescribeCut(vtkElasticDeformation* model, vtkPolyData* sheet, Messag
                         FindDistance(model->GetOutput(), sheet), " mm from the sheet");
 }
 
+// Returns the length of the longest vector, or of the longest difference from the vectors before.
+double FindLongest(vtkDataArray* vectors, vtkDataArray* before = nullptr)
+{
+  double longest = 0.0;
+  for (vtkIdType i = 0; i < vectors->GetNumberOfTuples(); ++i)
+  {
+    const std::array<double, 3> origin{};
+    longest = std::max(longest,
+      vtkMath::Distance2BetweenPoints(
+        vectors->GetTuple(i), before ? before->GetTuple(i) : origin.data()));
+  }
+  return std::sqrt(longest);
+}
+
 void SetUp(vtkElasticDeformation* model, const Options& options, vtkUnstructuredGrid* mesh)
 {
   model->SetInputData(mesh);
@@ -372,9 +388,44 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
     vtkNew<vtkMassSpringDeformation> model;
     model->SetDevice(options.Device);
     model->SetEndTime(options.Duration); // without a time range, VTK ignores all but the first time
-    model->SetHandlesData(MakeHandles(options.Pulls));
-    run(model, [&](double part) { model->UpdateTimeStep(part * options.Duration); });
-    deformation.Motion =
-      MakeText(options.Duration, " s, in steps of ", 1e3 * model->GetTimeStepInUse(), " ms");
+    model->SetFrameTime(options.Duration); // handles move during the whole of an update
+    double simulated = 0.0;
+    double step = 0.0;
+    // Handles move during the first half of --duration. A jump would turn tetrahedra inside out.
+    const auto simulate = [&](double part)
+    {
+      if (part > simulated)
+      {
+        model->SetHandlesData(MakeHandles(options.Pulls, std::min(1.0, 2.0 * part)));
+        model->UpdateTimeStep(part * options.Duration);
+        messages.Check("cannot simulate the body");
+        simulated = part;
+        step = std::max(step, model->GetTimeStepInUse());
+      }
+    };
+    vtkNew<vtkDoubleArray> before;
+    double seconds = 0.0; // from before to the end
+    run(model,
+      [&](double part)
+      {
+        simulate(std::min(part, 0.5));
+        if (part == 1.0)
+        {
+          simulate(0.99);
+          before->DeepCopy(model->GetOutput()->GetPointData()->GetArray("Displacement"));
+          seconds = (1.0 - simulated) * options.Duration;
+        }
+        simulate(part);
+      });
+    vtkDataArray* displacements = model->GetOutput()->GetPointData()->GetArray("Displacement");
+    const double speed = FindLongest(displacements, before) / seconds;
+    deformation.Motion = MakeText(options.Duration, " s, in steps of ", 1e3 * step,
+      " ms, at the end at up to ", std::setprecision(3), speed, " mm/s");
+    if (options.Movie.empty() && speed > 0.1 * FindLongest(displacements))
+    {
+      messages.Warn(MakeText(std::setprecision(3), "The springs still move by up to ", speed,
+        " mm/s at the end of --duration. Use a longer one, or --model fem, for the "
+        "shape at rest."));
+    }
   }
 }

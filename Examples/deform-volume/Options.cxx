@@ -237,7 +237,8 @@ void AddElasticModel(CLI::App& program, Options& options)
   addNumber("--young", options.YoungModulus, "Young modulus, in Pa");
   addNumber("--poisson", options.PoissonRatio, "Poisson ratio, from 0 to less than 0.495");
   addNumber("--density", options.Density, "Density, in kg/m^3");
-  addNumber("--duration", options.Duration, "With mass-spring: duration of the simulation, in s");
+  addNumber("--duration", options.Duration,
+    "With mass-spring: duration of the simulation, in s. Handles move during its first half");
 }
 
 void AddDeformation(CLI::App& program, Options& options)

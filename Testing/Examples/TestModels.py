@@ -105,7 +105,11 @@ def check(name, model, words, *arguments):
         model.SetModeToConverged()
         model.Update()
     else:
-        model.UpdateTimeStep(0.1)
+        # Handles move during the first half.
+        model.SetEndTime(0.1)
+        model.SetFrameTime(0.1)
+        for time in (0.05, 0.099, 0.1):
+            model.UpdateTimeStep(time)
     deform = deformvolume_vtk.vtkDeformVolumeFilter()
     deform.SetInputData(volume)
     deform.SetDeformationData(model.GetOutput())
@@ -310,6 +314,8 @@ def check_results_without_use():
                    path("useless.vtu"), warnings=2)
     assert not os.path.exists(path("useless.vti")) and not os.path.exists(path("useless.vtu"))
     Messages.warns(program, "fixes all nodes", *arguments, "--fix", "below:1000")
+    Messages.warns(program, ["springs still move by up to", "mm/s"], path("in.vti"), "--model", "mass-spring",
+                   *lattice, *fix, "--gravity", "0,0,-1", "--duration", "0.1", "-o", path("moving.vti"))
     Messages.warns(program, ["3000:4000 of --material", "0 to 849"], *arguments, *fix, "--material",
                    "0:700=liver", "--material", "3000:4000=bone")
 
