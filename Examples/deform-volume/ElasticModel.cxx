@@ -190,6 +190,29 @@ void AddFixedNodes(const Options& options, const Volume& volume, vtkUnstructured
   }
 }
 
+// Without a radius, a pull moves the nearest node, which may be far from its position.
+void WarnOfFarPulls(const Options& options, vtkUnstructuredGrid* mesh, Messages& messages)
+{
+  vtkNew<vtkStaticCellLocator> locator;
+  locator->SetDataSet(mesh);
+  locator->BuildLocator();
+  for (const Pull& pull : options.Pulls)
+  {
+    double closest[3];
+    vtkIdType cell = -1;
+    int part = 0;
+    double square = 0.0;
+    locator->FindClosestPoint(pull.Point.data(), closest, cell, part, square);
+    if (pull.Radius == 0.0 && cell >= 0 && square > mesh->GetCell(cell)->GetLength2())
+    {
+      messages.Warn(MakeText(std::setprecision(3), "The --pull at ", pull.Point[0], ",",
+        pull.Point[1], ",", pull.Point[2], " is ", std::sqrt(square),
+        " mm outside the mesh, and moves the nearest node. Are X,Y,Z of --pull world coordinates "
+        "of the volume?"));
+    }
+  }
+}
+
 void WarnOfUnusedMaterials(const Options& options, const Volume& volume, Messages& messages)
 {
   for (const MaterialOfValues& material : options.Materials)
@@ -340,6 +363,7 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
 {
   AddFixedNodes(options, volume, mesh, messages, deformation);
   AddMaterials(options, volume, mesh, messages);
+  WarnOfFarPulls(options, mesh, messages);
   // update(part): moves the handles by this fraction of their displacements, or simulates this
   // fraction of --duration.
   const auto run = [&](vtkElasticDeformation* model, const auto& update)

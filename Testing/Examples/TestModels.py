@@ -314,6 +314,8 @@ def check_results_without_use():
                    path("useless.vtu"), warnings=2)
     assert not os.path.exists(path("useless.vti")) and not os.path.exists(path("useless.vtu"))
     Messages.warns(program, "fixes all nodes", *arguments, "--fix", "below:1000")
+    far = ("--fix", "below:10", "--pull", f"{middle[0]},{middle[1]},{bounds[5] + 20},0,0,1")
+    Messages.warns(program, "is 20 mm outside the mesh, and moves the nearest node", *arguments, *far)
     Messages.warns(program, ["springs still move by up to", "mm/s"], path("in.vti"), "--model", "mass-spring",
                    *lattice, *fix, "--gravity", "0,0,-1", "--duration", "0.1", "-o", path("moving.vti"))
     Messages.warns(program, ["3000:4000 of --material", "0 to 849"], *arguments, *fix, "--material",
