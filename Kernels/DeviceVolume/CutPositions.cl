@@ -18,6 +18,7 @@
 //   positions  for each cut vertex: position of its copy, and in the last component 0 if the copy coincides with the
 //              vertex. Tetrahedra with only such vertices need no copies. The bit DEFORMVOLUME_VERTEX_UNSPLIT of the
 //              state is set for such vertices.
+//   numbers    cut vertices to process
 
 #define NEIGHBOR(dx, dy, dz) (1u << ((dz + 1) * 9 + (dy + 1) * 3 + dx + 1))
 #define EXTRAPOLATES_LINEARLY 0
@@ -148,16 +149,31 @@ static int CanExtrapolate(const CutMesh* mesh, int3 from, int3 to, int side, con
     AreConnected(mesh, from, to, p);
 }
 
-// Computes the stencils of the cut vertices begin to end - 1.
+// Copies the stencils and positions of the vertices that are also in a previous list.
+__kernel void KeepStencils(__global const uint* lastRows, __global const CutVertex* lastVertices,
+  __global const uint2* lastStencils, __global const int4* lastPositions, __global const CutVertex* vertices,
+  __global uint2* stencils, __global int4* positions, const uint count, const KernelParameters p)
+{
+  const uint i = get_global_id(0);
+  const int last =
+    i < count ? FindCutVertex(lastRows, lastVertices, vertices[i].X, vertices[i].Y, vertices[i].Z, &p) : -1;
+  if (last >= 0)
+  {
+    stencils[i] = lastStencils[last];
+    positions[i] = lastPositions[last];
+  }
+}
+
+// Computes the stencils of cut vertices.
 __kernel void FindCutStencils(__global const uchar* state, __global const uchar* active, __global const uint* rows,
-  __global const CutVertex* vertices, __global uint2* stencils, const uint begin, const uint end,
+  __global const CutVertex* vertices, __global uint2* stencils, __global const uint* numbers, const uint count,
   const KernelParameters p)
 {
-  const uint i = begin + get_global_id(0);
-  if (i >= end)
+  if (get_global_id(0) >= count)
   {
     return;
   }
+  const uint i = numbers[get_global_id(0)];
   const CutMesh mesh = { rows, vertices, state, active };
   const int3 at = (int3)(vertices[i].X, vertices[i].Y, vertices[i].Z);
   const int side = vertices[i].Distance < 0.0f;
@@ -217,30 +233,6 @@ static int DivideRounded(int sum, int count)
   return twice >= 0 ? twice / (2 * count) : -((2 * count - 1 - twice) / (2 * count));
 }
 
-// Whether a brick with cells at a vertex is wanted. wanted: a byte per brick.
-static int IsInBricks(__global const uchar* wanted, int3 at, const KernelParameters* p)
-{
-  const int3 cells = (int3)(DEFORMVOLUME_BRICK_X, DEFORMVOLUME_BRICK_Y, DEFORMVOLUME_BRICK_Z);
-  const int3 count = (int3)(p->BrickCount[0], p->BrickCount[1], p->BrickCount[2]);
-  const int3 index = at - (int3)(p->BrickOrigin[0], p->BrickOrigin[1], p->BrickOrigin[2]);
-  const int3 low = max(index - 1, 0) / cells;
-  const int3 high = min(index / cells, count - 1);
-  for (int z = low.z; z <= high.z; ++z)
-  {
-    for (int y = low.y; y <= high.y; ++y)
-    {
-      for (int x = low.x; x <= high.x; ++x)
-      {
-        if (wanted[(z * count.y + y) * count.x + x])
-        {
-          return 1;
-        }
-      }
-    }
-  }
-  return 0;
-}
-
 // Returns the position of the copy of a vertex. own: position of the vertex.
 static int4 CopyPosition(const Mapping* m, int3 at, uint2 stencil, int3 own, const KernelParameters* p)
 {
@@ -272,22 +264,17 @@ static int4 CopyPosition(const Mapping* m, int3 at, uint2 stencil, int3 own, con
   return isNear ? (int4)(own, 0) : (int4)(other, 1);
 }
 
-// Computes the positions of the copies of the cut vertices begin to end - 1. some: process only vertices in bricks that
-// are wanted.
+// Computes the positions of the copies of cut vertices.
 __kernel void FindCutPositions(MAPPING_PARAMETERS, __global uchar* state, __global const CutVertex* vertices,
-  __global const uint2* stencils, __global int4* positions, __global const uchar* wanted, const int some,
-  const uint begin, const uint end, const KernelParameters p)
+  __global const uint2* stencils, __global int4* positions, __global const uint* numbers, const uint count,
+  const KernelParameters p)
 {
-  const uint i = begin + get_global_id(0);
-  if (i >= end)
+  if (get_global_id(0) >= count)
   {
     return;
   }
+  const uint i = numbers[get_global_id(0)];
   const int3 at = (int3)(vertices[i].X, vertices[i].Y, vertices[i].Z);
-  if (some && !IsInBricks(wanted, at, &p))
-  {
-    return;
-  }
   const Mapping m = MAPPING_ARGUMENTS;
   const uint2 stencil = stencils[i];
   const size_t vertex = VertexInChunk(at.x, at.y, at.z, &p);

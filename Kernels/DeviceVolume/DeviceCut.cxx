@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DeviceCut.h"
 
+#include "BrickGrid.h"
 #include "FiveTetrahedra.h"
 #include "HostMemory.h"
 #include "KernelMaking.h"
 #include "MaskChanges.h"
+#include "VertexCuboids.h"
 
 #include <algorithm>
 #include <array>
@@ -211,7 +213,6 @@ std::vector<Extent> DeviceCut::Set(const OpenCLContext& context, const cl::Comma
   {
     this->List = std::move(list);
     this->RowBegins = std::move(rows);
-    this->StencilsCurrent = false;
     this->Send(context, queue);
   }
   return changes;
@@ -220,66 +221,134 @@ std::vector<Extent> DeviceCut::Set(const OpenCLContext& context, const cl::Comma
 void DeviceCut::Send(const OpenCLContext& context, const cl::CommandQueue& queue)
 {
   queue.finish(); // no command may use the buffers that are released
-  this->Rows = this->Vertices = this->Stencils = this->Positions = cl::Buffer();
   if (this->List.empty())
   {
+    this->Now = this->Last = ListBuffers();
+    this->Invalidate();
     return;
+  }
+  if (this->Known && !this->Last.Stencils())
+  {
+    this->Last = this->Now;
   }
   const auto make = [&](std::size_t bytes)
   { return cl::Buffer(context.GetContext(), CL_MEM_READ_WRITE, bytes); };
   const std::size_t listBytes = this->List.size() * sizeof(CutVertex);
   const std::size_t rowBytes = this->RowBegins.size() * sizeof(std::uint32_t);
-  this->Rows = make(rowBytes);
-  this->Vertices = make(listBytes);
-  this->Stencils = make(this->List.size() * sizeof(cl_uint2));
-  this->Positions = make(this->List.size() * sizeof(cl_int4));
-  queue.enqueueWriteBuffer(this->Rows, CL_TRUE, 0, rowBytes, this->RowBegins.data());
-  queue.enqueueWriteBuffer(this->Vertices, CL_TRUE, 0, listBytes, this->List.data());
+  this->Now = ListBuffers();
+  this->Numbers = cl::Buffer();
+  this->Now.Rows = make(rowBytes);
+  this->Now.Vertices = make(listBytes);
+  this->Now.Stencils = make(this->List.size() * sizeof(cl_uint2));
+  this->Now.Positions = make(this->List.size() * sizeof(cl_int4));
+  this->Numbers = make(this->List.size() * sizeof(cl_uint));
+  queue.enqueueWriteBuffer(this->Now.Rows, CL_TRUE, 0, rowBytes, this->RowBegins.data());
+  queue.enqueueWriteBuffer(this->Now.Vertices, CL_TRUE, 0, listBytes, this->List.data());
+}
+
+std::vector<cl_uint> DeviceCut::FindNumbers(
+  const KernelParameters& p, const std::vector<Extent>* moved, cl_uint& stencils) const
+{
+  std::vector<cl_uint> numbers;
+  std::vector<unsigned char> isListed(this->List.size());
+  // Each chunk has its own states, so vertices between two chunks are processed for both.
+  const Extent all{ { 0, p.Size[0] - 1, 0, p.Size[1] - 1, p.LayersBegin, p.LayersEnd } };
+  const auto add = [&](const Extent& box, int beyond)
+  {
+    for (int z = std::max(box[4] - beyond, all[4]); z <= std::min(box[5] + beyond, all[5]); ++z)
+    {
+      for (int y = std::max(box[2] - beyond, 0); y <= std::min(box[3] + beyond, all[3]); ++y)
+      {
+        const auto row = static_cast<std::size_t>(std::int64_t{ z } * p.Size[1] + y);
+        const auto end = this->List.begin() + this->RowBegins[row + 1];
+        auto v = std::lower_bound(this->List.begin() + this->RowBegins[row], end, box[0] - beyond,
+          [](const CutVertex& vertex, int x) { return vertex.X < x; });
+        for (; v != end && v->X <= box[1] + beyond; ++v)
+        {
+          const auto number = static_cast<cl_uint>(v - this->List.begin());
+          if (!isListed[number])
+          {
+            isListed[number] = 1;
+            numbers.push_back(number);
+          }
+        }
+      }
+    }
+  };
+  const auto addAll = [&](const std::vector<Extent>& boxes, int beyond)
+  { std::for_each(boxes.begin(), boxes.end(), [&](const Extent& box) { add(box, beyond); }); };
+  if (!this->Known)
+  {
+    add(all, 0);
+  }
+  constexpr int halo = BrickGrid::HaloOfCuts;
+  addAll(this->Vertices, halo);
+  addAll(this->Cells, halo);
+  stencils = static_cast<cl_uint>(numbers.size());
+  // VertexStates::Update() resets the states of whole cuboids. FindCutPositions completes them.
+  const VertexCuboids cuboids(p);
+  for (const cl_uint cuboid :
+    JoinLists(cuboids.Find(this->Vertices, halo), cuboids.Find(this->Cells, halo)))
+  {
+    add(cuboids.GetVertices(cuboid), 0);
+  }
+  addAll(moved ? *moved : std::vector<Extent>{ all }, 0);
+  return numbers;
 }
 
 void DeviceCut::Update(OpenCLContext& context, const cl::CommandQueue& queue,
   const KernelParameters& p, const VolumeChunk& chunk, const cl::Program& mapping,
-  const MappingSetter& set, const cl::Buffer& active, const std::vector<unsigned char>& wanted)
+  const MappingSetter& set, const cl::Buffer& active, const std::vector<Extent>* moved)
 {
-  // Each chunk has its own states, so vertices between two chunks are processed for both.
-  const auto row = [&](int z)
-  { return this->RowBegins[static_cast<std::size_t>(z) * static_cast<std::size_t>(p.Size[1])]; };
-  const cl_uint begin = row(chunk.LayersBegin);
-  const cl_uint end = row(chunk.LayersEnd + 1);
-  if (begin == end)
+  const auto launch = [&](const cl::Kernel& kernel, std::size_t items)
+  {
+    constexpr std::size_t group = 64;
+    if (items > 0)
+    {
+      context.Launch(
+        queue, kernel, cl::NDRange((items + group - 1) / group * group), cl::NDRange(group));
+    }
+  };
+  if (this->Last.Stencils())
+  {
+    launch(MakeKernel(mapping, "KeepStencils", this->Last.Rows, this->Last.Vertices,
+             this->Last.Stencils, this->Last.Positions, this->Now.Vertices, this->Now.Stencils,
+             this->Now.Positions, static_cast<cl_uint>(this->List.size()), p),
+      this->List.size());
+    queue.finish(); // no command may use the buffers that are released
+    this->Last = ListBuffers();
+  }
+  cl_uint stencils = 0;
+  const std::vector<cl_uint> numbers = this->FindNumbers(p, moved, stencils);
+  if (numbers.empty())
   {
     return;
   }
-  constexpr std::size_t group = 64;
-  const cl::NDRange items((end - begin + group - 1) / group * group);
-  if (!this->StencilsCurrent)
-  {
-    context.Launch(queue,
-      MakeKernel(mapping, "FindCutStencils", chunk.State, active, this->Rows, this->Vertices,
-        this->Stencils, begin, end, p),
-      items, cl::NDRange(group));
-  }
-  const bool some = this->StencilsCurrent && !wanted.empty();
-  if (some)
-  {
-    Reserve(context, this->Wanted, wanted.size());
-    queue.enqueueWriteBuffer(this->Wanted, CL_TRUE, 0, wanted.size(), wanted.data());
-  }
+  const auto count = static_cast<cl_uint>(numbers.size());
+  queue.enqueueWriteBuffer(this->Numbers, CL_TRUE, 0, count * sizeof(cl_uint), numbers.data());
+  launch(MakeKernel(mapping, "FindCutStencils", chunk.State, active, this->Now.Rows,
+           this->Now.Vertices, this->Now.Stencils, this->Numbers, stencils, p),
+    stencils);
   cl::Kernel kernel(mapping, "FindCutPositions");
-  deformvolume::SetArguments(kernel, set(kernel, chunk), chunk.State, this->Vertices,
-    this->Stencils, this->Positions, this->Wanted, cl_int{ some }, begin, end, p);
-  context.Launch(queue, kernel, items, cl::NDRange(group));
+  deformvolume::SetArguments(kernel, set(kernel, chunk), chunk.State, this->Now.Vertices,
+    this->Now.Stencils, this->Now.Positions, this->Numbers, count, p);
+  launch(kernel, count);
 }
 
 cl_uint DeviceCut::SetArguments(cl::Kernel& kernel, cl_uint argument) const
 {
-  return deformvolume::SetArguments(kernel, argument, this->Rows, this->Vertices, this->Positions);
+  return deformvolume::SetArguments(
+    kernel, argument, this->Now.Rows, this->Now.Vertices, this->Now.Positions);
 }
 
 std::uint64_t DeviceCut::GetMemory() const
 {
-  return deformvolume::GetMemory(
-    this->Rows, this->Vertices, this->Stencils, this->Positions, this->Wanted);
+  std::uint64_t bytes = deformvolume::GetMemory(this->Numbers);
+  for (const ListBuffers& list : { this->Now, this->Last })
+  {
+    bytes += deformvolume::GetMemory(list.Rows, list.Vertices, list.Stencils, list.Positions);
+  }
+  return bytes;
 }
 
 } // namespace deformvolume

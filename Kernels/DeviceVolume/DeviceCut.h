@@ -5,6 +5,7 @@
 #include "Extent.h"
 #include "KernelParameters.h"
 #include "OpenCLContext.h"
+#include "PartialUpdate.h"
 #include "VolumeChunk.h"
 #include "VoxelGrid.h"
 
@@ -16,36 +17,34 @@ namespace deformvolume
 
 /// A smooth cut on the device: the list of the vertices of crossed cells, with their distances from
 /// the sheet and the positions of their copies on the other side (CutPositions.cl). The memory is
-/// proportional to the size of the cut, not of the volume.
-class DeviceCut
+/// proportional to the size of the cut, not of the volume. The vertices and cells to report are
+/// those whose states or active tetrahedra may have changed.
+class DeviceCut : public PartialUpdate
 {
 public:
   /// Set the cut. crossed: one byte per cell, bit i: tetrahedron i is crossed; null: no cut.
   /// distances: one float per voxel. Returns bounding boxes of the vertices whose entries have
-  /// changed.
+  /// changed. Report them to the states of the vertices, which report them to the cut.
   std::vector<Extent> Set(const OpenCLContext& context, const cl::CommandQueue& queue,
     const VoxelGrid& voxelGrid, const unsigned char* crossed, const float* distances);
 
   /// Whether any cell has crossed tetrahedra.
   bool IsOn() const { return !this->List.empty(); }
   const std::vector<CutVertex>& GetList() const { return this->List; }
-  /// Makes the next update compute the stencils, since states or active tetrahedra have changed.
-  void InvalidateStencils() { this->StencilsCurrent = false; }
 
-  /// Computes the positions of the copies in a chunk. p: parameters of the chunk. mapping: the
-  /// program of the deformation mapping. active: the active tetrahedra; may be null. wanted: for
-  /// each brick, whether positions of its vertices may have changed; empty: all may have changed.
-  /// If the stencils must be computed, all positions are computed. Call Finish() after all chunks.
+  /// Computes the positions of the copies in a chunk, and the stencils near the changes. p:
+  /// parameters of the chunk. mapping: the program of the deformation mapping. active: the active
+  /// tetrahedra; may be null. moved: boxes of the vertices whose positions may have changed; null:
+  /// all may have changed. Call Finish() after all chunks.
   void Update(OpenCLContext& context, const cl::CommandQueue& queue, const KernelParameters& p,
     const VolumeChunk& chunk, const cl::Program& mapping, const MappingSetter& set,
-    const cl::Buffer& active, const std::vector<unsigned char>& wanted);
-  void Finish() { this->StencilsCurrent = true; }
+    const cl::Buffer& active, const std::vector<Extent>* moved);
 
   ///@{
   /// The buffers for kernels. Null if there is no cut.
-  const cl::Buffer& GetRows() const { return this->Rows; }
-  const cl::Buffer& GetVertices() const { return this->Vertices; }
-  const cl::Buffer& GetPositions() const { return this->Positions; }
+  const cl::Buffer& GetRows() const { return this->Now.Rows; }
+  const cl::Buffer& GetVertices() const { return this->Now.Vertices; }
+  const cl::Buffer& GetPositions() const { return this->Now.Positions; }
   ///@}
   /// Sets the kernel arguments of the cut (CUT_PARAMETERS). argument: index of the first of them.
   /// Returns the index of the next argument.
@@ -54,16 +53,26 @@ public:
   std::uint64_t GetMemory() const;
 
 private:
+  // The list and the results of the kernels (CutPositions.cl).
+  struct ListBuffers
+  {
+    cl::Buffer Rows;
+    cl::Buffer Vertices;
+    cl::Buffer Stencils;
+    cl::Buffer Positions;
+  };
+
   void Send(const OpenCLContext& context, const cl::CommandQueue& queue);
+  // Returns the numbers of the vertices of a chunk whose positions must be computed. Sets stencils
+  // to the number of vertices, at the beginning of the list, that need new stencils, too.
+  std::vector<cl_uint> FindNumbers(
+    const KernelParameters& p, const std::vector<Extent>* moved, cl_uint& stencils) const;
 
   std::vector<CutVertex> List;
   std::vector<std::uint32_t> RowBegins;
-  cl::Buffer Rows;
-  cl::Buffer Vertices;
-  cl::Buffer Stencils;
-  cl::Buffer Positions;
-  cl::Buffer Wanted; // a byte per brick
-  bool StencilsCurrent = false;
+  ListBuffers Now;
+  ListBuffers Last;   // the list before Set(), until the next update; null if nothing of it is kept
+  cl::Buffer Numbers; // of FindNumbers()
 };
 
 } // namespace deformvolume

@@ -163,7 +163,10 @@ void DeviceVolume::UpdateState(const cl::Program& mapping, bool movesAll, const 
     return;
   }
   DeviceCut& cut = this->Masks.GetCut();
-  cut.InvalidateStencils();
+  if (cut.IsOn())
+  {
+    this->States.Report(cut); // before the update, which may fail after some chunks
+  }
   this->WithState = this->Masks.HasAny() || cut.IsOn() ||
     !(this->HasMesh() ? this->Mapping.AreAllLinked() : movesAll);
   if (!this->WithState)
@@ -187,19 +190,16 @@ void DeviceVolume::UpdateCut(
   {
     return;
   }
-  std::vector<unsigned char> wanted;
-  if (bricks)
+  std::vector<Extent> moved;
+  for (std::size_t i = 0; bricks && i < bricks->size(); ++i)
   {
-    wanted.resize(this->Bricks.GetNumberOfBricks());
-    for (const cl_uint brick : *bricks)
-    {
-      wanted[brick & ((1U << DEFORMVOLUME_BRICK_BITS) - 1)] = 1;
-    }
+    const cl_uint brick = (*bricks)[i] & ((1U << DEFORMVOLUME_BRICK_BITS) - 1);
+    moved.push_back(this->Bricks.GetVertices(brick, 0));
   }
   for (const VolumeChunk& chunk : this->Chunks)
   {
     cut.Update(this->Context, this->Queue, this->GetParameters(chunk), chunk, mapping, set,
-      this->Masks.GetActive(chunk), wanted);
+      this->Masks.GetActive(chunk), bricks ? &moved : nullptr);
   }
   cut.Finish();
 }

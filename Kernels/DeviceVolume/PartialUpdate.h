@@ -27,6 +27,17 @@ public:
   void ChangeCells(const std::vector<Extent>& boxes) { this->Add(this->Cells, boxes); }
   ///@}
 
+  /// Reports the same changes to other data.
+  void Report(PartialUpdate& other) const
+  {
+    if (!this->Known)
+    {
+      other.Invalidate();
+    }
+    other.ChangeVertices(this->Vertices);
+    other.ChangeCells(this->Cells);
+  }
+
   /// Whether the data are up to date.
   bool IsCurrent() const { return this->Current; }
 

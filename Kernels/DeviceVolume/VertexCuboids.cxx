@@ -56,17 +56,27 @@ std::vector<cl_uint> VertexCuboids::Find(const std::vector<Extent>& boxes, int h
   return cuboids;
 }
 
-Extent VertexCuboids::GetCells(cl_uint cuboid) const
+Extent VertexCuboids::GetVertices(cl_uint cuboid) const
 {
   std::int64_t number = cuboid;
-  Extent cells;
+  Extent vertices;
   for (int axis = 0; axis < 3; ++axis)
   {
     const int begin =
       this->First[axis] + static_cast<int>(number % this->Count[axis]) * Sizes[axis];
-    cells[2 * axis] = begin;
-    cells[2 * axis + 1] = std::min(begin + Sizes[axis], this->End[axis] - 1) - 1;
+    vertices[2 * axis] = begin;
+    vertices[2 * axis + 1] = std::min(begin + Sizes[axis], this->End[axis]) - 1;
     number /= this->Count[axis];
+  }
+  return vertices;
+}
+
+Extent VertexCuboids::GetCells(cl_uint cuboid) const
+{
+  Extent cells = this->GetVertices(cuboid);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    cells[2 * axis + 1] = std::min(cells[2 * axis + 1], this->End[axis] - 2);
   }
   return cells;
 }

@@ -30,6 +30,8 @@ public:
   /// Returns the cuboids with a vertex in the boxes, each enlarged by `halo` vertices on each side;
   /// in ascending order.
   std::vector<cl_uint> Find(const std::vector<Extent>& boxes, int halo) const;
+  /// Returns the local indices of the vertices of a cuboid.
+  Extent GetVertices(cl_uint cuboid) const;
   /// Returns the local indices of the cells that begin at the vertices of a cuboid.
   Extent GetCells(cl_uint cuboid) const;
 

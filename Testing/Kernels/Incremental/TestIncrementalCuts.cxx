@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <random>
 #include <utility>
@@ -88,19 +90,21 @@ struct VoxelField
     }
     deformer.SetDisplacementField(field, nullptr);
   }
+  void SendAll(VolumeDeformer& deformer)
+  {
+    deformer.SetDevice("");
+    deformer.SetVoxelGrid(this->Volume.Shape);
+    deformer.SetArrays(this->Volume.GetArrays());
+    this->Volume.SendMasks(deformer);
+    if (this->IsMesh)
+    {
+      this->SendMesh(deformer);
+    }
+  }
   void SendAll()
   {
-    for (VolumeDeformer* deformer : { &this->Whole, &this->Updated })
-    {
-      deformer->SetDevice("");
-      deformer->SetVoxelGrid(this->Volume.Shape);
-      deformer->SetArrays(this->Volume.GetArrays());
-      this->Volume.SendMasks(*deformer);
-      if (this->IsMesh)
-      {
-        this->SendMesh(*deformer);
-      }
-    }
+    this->SendAll(this->Whole);
+    this->SendAll(this->Updated);
   }
   void SendMesh(VolumeDeformer& deformer)
   {
@@ -186,26 +190,52 @@ TEST(IncrementalCuts, CopiesReachBeyondVertices)
   }
 }
 
-// Moves single voxels beside a sheet that divides random tetrahedra.
+namespace
+{
+
+// A sheet that divides random tetrahedra, and random displacements.
+struct RandomSheet : VoxelField
+{
+  std::mt19937 Random{ 5 };
+  std::uniform_real_distribution<float> Jitter{ -0.4F, 0.4F };
+
+  RandomSheet()
+  {
+    for (float& component : this->Vectors)
+    {
+      component = this->Jitter(this->Random);
+    }
+    for (int voxel = 0; voxel < Size * Size * Size; ++voxel)
+    {
+      this->Volume.CutDistances.push_back(static_cast<float>(this->Random() % 33) / 16.0F - 1.0F);
+    }
+    const int cells = Size - 1;
+    for (int cell = 0; cell < cells * cells * cells; ++cell)
+    {
+      const int x = cell % cells;
+      this->Volume.Crossed.push_back(x > 28 && x < 36 ? 31 : 0);
+    }
+  }
+  std::array<int, 3> PickVoxel()
+  {
+    const auto pick = [&](int count)
+    { return static_cast<int>(this->Random() % static_cast<unsigned int>(count)); };
+    const int x = 26 + pick(12);
+    const int y = pick(Size);
+    return { { x, y, pick(Size) } };
+  }
+  void Move(const std::array<int, 3>& voxel)
+  {
+    this->GetVector(voxel[0], voxel[1], voxel[2])[this->Random() % 3] = this->Jitter(this->Random);
+  }
+};
+
+} // namespace
+
+// Moves single voxels beside the sheet.
 TEST(IncrementalCuts, VoxelsMoveCopiesUpToTwoVoxelsAway)
 {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<float> jitter(-0.4F, 0.4F);
-  VoxelField made;
-  for (float& component : made.Vectors)
-  {
-    component = jitter(random);
-  }
-  for (int voxel = 0; voxel < VoxelField::Size * VoxelField::Size * VoxelField::Size; ++voxel)
-  {
-    made.Volume.CutDistances.push_back(static_cast<float>(random() % 33) / 16.0F - 1.0F);
-  }
-  const int cells = VoxelField::Size - 1;
-  for (int cell = 0; cell < cells * cells * cells; ++cell)
-  {
-    const int x = cell % cells;
-    made.Volume.Crossed.push_back(x > 28 && x < 36 ? 31 : 0);
-  }
+  RandomSheet made;
   made.SendAll();
   made.Deform();
   int parts = 0;
@@ -213,13 +243,52 @@ TEST(IncrementalCuts, VoxelsMoveCopiesUpToTwoVoxelsAway)
   for (int step = 0; step < steps; ++step)
   {
     SCOPED_TRACE(step);
-    float* vector = made.GetVector(26 + static_cast<int>(random() % 12),
-      static_cast<int>(random() % VoxelField::Size), static_cast<int>(random() % VoxelField::Size));
-    vector[step % 3] = jitter(random);
+    made.Move(made.PickVoxel());
     parts += made.Deform() ? 1 : 0;
     ASSERT_FALSE(HasFailure());
   }
   EXPECT_EQ(parts, steps);
+}
+
+// Masks and the sheet change while nothing moves, then a voxel near them moves. The output
+// equals that of a new volume, and that of a volume of two chunks.
+TEST(IncrementalCuts, MasksChangeCopiesUpToTwoVoxelsAway)
+{
+  constexpr int size = VoxelField::Size;
+  RandomSheet made;
+  made.Volume.Blanked.resize(made.Volume.CutDistances.size());
+  made.Volume.Active.resize(made.Volume.Crossed.size(), 31);
+  const auto getCell = [](const std::array<int, 3>& at)
+  {
+    const int cells = size - 1;
+    return static_cast<std::size_t>((at[2] % cells * cells + at[1] % cells) * cells + at[0]);
+  };
+  VolumeDeformer chunked;
+  chunked.SetAllocationLimit(16 * size * size * size);
+  made.SendAll();
+  made.SendAll(chunked);
+  made.Deform();
+  const int steps = HasVectors() ? 10 : 3;
+  for (int step = 0; step < steps; ++step)
+  {
+    SCOPED_TRACE(step);
+    const std::array<int, 3> at = made.PickVoxel();
+    made.Volume.Active[getCell(at)] = 0;
+    made.Volume.Blanked[static_cast<std::size_t>((at[1] * size + at[2]) * size + at[0])] ^= 1;
+    made.Volume.Crossed[getCell({ { at[0] + 1, at[1], at[2] } })] ^= 31;
+    made.Volume.SendMasks(made.Whole);
+    made.Volume.SendMasks(made.Updated);
+    EXPECT_TRUE(made.Deform());
+    made.SendAll(made.Whole); // discards everything on the device
+    made.Move(at);
+    EXPECT_TRUE(made.Deform());
+    made.Volume.SendMasks(chunked);
+    made.SendDisplacements(chunked);
+    EditedOutputs outputs(made.Volume);
+    chunked.Deform(outputs.MakeRequest(made.Volume));
+    EXPECT_TRUE(outputs == *made.Last);
+    ASSERT_FALSE(HasFailure());
+  }
 }
 
 // The moved voxels are two voxels away from another sub-brick, and move copies in it. The other
