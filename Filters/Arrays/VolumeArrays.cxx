@@ -126,6 +126,14 @@ bool HasSameMask(
     last[2 * mask + 1] == now[1];
 }
 
+// Whether a mask has not changed since a stamp was taken.
+bool IsUnchanged(
+  const std::array<vtkAbstractArray*, NumberOfMasks>& arrays, Mask mask, const Stamp& last)
+{
+  return HasSameMask(arrays, mask, last) &&
+    last[2 * mask].second == (arrays[mask] ? arrays[mask]->GetMTime() : 0);
+}
+
 // The tuples of a mask that were written since a stamp was taken, according to the log of its
 // array. Empty: unknown.
 std::optional<PointRanges> FindWrittenMask(
@@ -338,6 +346,7 @@ VolumeMasks ReadMasks(vtkImageData* volume, const Stamp& last)
   masks.Cut = FindCut(volume);
   const std::array<vtkAbstractArray*, NumberOfMasks> arrays = FindMasks(volume);
   masks.WrittenDistances = FindWrittenMask(arrays, Distances, last);
+  masks.HasSameCut = IsUnchanged(arrays, CutCells, last) && IsUnchanged(arrays, CutPoints, last);
   if (!arrays[ValidPoints] && HasSameMask(arrays, ValidPoints, last))
   {
     masks.WrittenBlanked = FindWrittenMask(arrays, BlankedPoints, last);

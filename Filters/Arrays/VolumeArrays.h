@@ -88,6 +88,8 @@ struct VolumeMasks
   std::optional<PointRanges> WrittenActive;
   std::optional<PointRanges> WrittenDistances;
   ///@}
+  /// Whether the smooth cut has not changed since this stamp.
+  bool HasSameCut = false;
 };
 
 /// Reads the masks of a volume. last: GetMasksStamp() at the last reading; empty: there was none.

@@ -236,9 +236,10 @@ void vtkDeformVolumeFilter::vtkInternals::SendVolume(
   }
   const auto written = [](const std::optional<deformvolume::PointRanges>& ranges)
   { return ranges ? &*ranges : nullptr; };
-  device.SetMasks({ masks.Blanked, masks.Active, masks.Distances.Values, masks.Cut.Crossed,
-                    masks.Cut.Distances.Values, masks.BlankedBits, written(masks.WrittenBlanked),
-                    written(masks.WrittenActive), written(masks.WrittenDistances) },
+  device.SetMasks(
+    { masks.Blanked, masks.Active, masks.Distances.Values, masks.Cut.Crossed,
+      masks.Cut.Distances.Values, masks.BlankedBits, written(masks.WrittenBlanked),
+      written(masks.WrittenActive), written(masks.WrittenDistances), masks.HasSameCut },
     stamp);
 }
 

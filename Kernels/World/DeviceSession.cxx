@@ -96,7 +96,10 @@ void DeviceSession::SetMasks(const WorldMasks& masks, const Stamp& stamp)
       this->Deformer.SetBlanked(masks.Blanked, masks.BlankedBits, masks.WrittenBlanked);
       this->Deformer.SetActiveTetrahedra(masks.ActiveTetrahedra, masks.WrittenActive);
       this->Deformer.SetBoundaryDistances(masks.BoundaryDistances, masks.WrittenDistances);
-      this->Deformer.SetCut(masks.CutTetrahedra, masks.CutDistances);
+      if (!masks.HasSameCut)
+      {
+        this->Deformer.SetCut(masks.CutTetrahedra, masks.CutDistances);
+      }
     });
   this->SentMasks = stamp;
 }

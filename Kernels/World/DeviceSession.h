@@ -40,6 +40,8 @@ struct WorldMasks
   const PointRanges* WrittenActive = nullptr;
   const PointRanges* WrittenDistances = nullptr;
   ///@}
+  /// Whether the smooth cut has not changed since the last call of DeviceSession::SetMasks().
+  bool HasSameCut = false;
 };
 
 /// A VolumeDeformer with a record of the data on its device. Only data that changed are sent. Call
