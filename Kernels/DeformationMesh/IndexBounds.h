@@ -215,6 +215,7 @@ glm::dvec3 GetVector(const Number* vectors, std::int64_t index)
 /// The transform DisplacementField::IndexToField and its inverse.
 struct FieldTransform
 {
+  /// Copies the transform of a field.
   explicit FieldTransform(const DisplacementField& field)
     : Last(field.Dimensions[0] - 1, field.Dimensions[1] - 1, field.Dimensions[2] - 1)
   {
