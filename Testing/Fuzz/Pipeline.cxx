@@ -118,6 +118,7 @@ Pipeline::Pipeline(std::uint64_t seed, std::ostream& log)
     this->Settings.OpenSplits = this->Random.Chance(0.4);
     if (this->Random.Chance(0.3))
     {
+      this->Settings.OpenSplits = false; // an error with KEEP
       this->Settings.OutsideMode = vtkDeformVolumeFilter::KEEP;
       this->Settings.FadeDistance = this->Volume->GetLength() / 8.0;
     }

@@ -181,7 +181,7 @@ void Apply(const Settings& settings, vtkDeformVolumeFilter* filter)
   }
   filter->SetGenerateRestPositions(settings.HasExtraArrays);
   filter->SetGenerateJacobian(settings.HasExtraArrays);
-  filter->SetGenerateFoldCount(settings.HasExtraArrays);
+  filter->SetGenerateFoldCount(settings.HasDensity); // with either, the whole output is updated
   if (settings.HasDensity)
   {
     filter->AddDensityArray("value");

@@ -375,7 +375,7 @@ inline testing::AssertionResult IsPartOf(vtkImageData* part, vtkImageData* whole
   cropped->ShallowCopy(whole);
   cropped->Crop(part->GetExtent());
   vtkPointData* expected = cropped->GetPointData();
-  if (GetExtent(part) != GetExtent(cropped) ||
+  if (part->GetNumberOfPoints() == 0 || GetExtent(part) != GetExtent(cropped) ||
     GetPoint(part, part->GetNumberOfPoints() - 1) !=
       GetPoint(cropped, part->GetNumberOfPoints() - 1))
   {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cuts that divide tetrahedra: misuse, gaps between two moved planes, split meshes, undo and redo,
 // chains of filters, tools, deformed volumes, coarse volumes and ChainMail. Kernels.TestSmoothCuts
-// compares cuts that stay closed, labels and boundary distances with a reference.
+// tests cuts that stay closed. Kernels.TestResampling compares labels and boundary distances beside
+// cuts with a reference.
 #include "ChainMailTesting.h"
 #include "EditChecks.h"
 

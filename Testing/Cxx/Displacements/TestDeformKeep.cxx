@@ -9,11 +9,15 @@
 #include <glm/geometric.hpp>
 
 #include <vtkAppendFilter.h>
+#include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkIdList.h>
 #include <vtkPlaneSource.h>
+#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -236,30 +240,90 @@ TEST(DeformKeep, Warnings)
   subject.Expect("as the fade distance is 0");
 }
 
-// The static mapping is built again for another FadeDistance, and for more new nodes than it has
-// room for. Testing/Fuzz compares other edits with new filters.
-TEST(DeformKeep, Mappings)
+// Displacements and masks change, and the mesh is split. The output must be equal to that of a new
+// filter.
+TEST(DeformKeep, Incremental)
 {
-  const auto volume = MakeTissue({ { 0, 41, 0, 33, 0, 29 } });
-  const auto mesh = MakeBox(glm::dvec3(10.2, 9.1, 8.3), glm::dvec3(27.6, 21.3, 19.9));
-  SetDisplacements(mesh, Shift(2.0, -1.5, 0.75));
+  const auto volume = MakeTissue({ { 0, 69, 0, 49, 0, 45 } }, glm::dvec3(1.0, 0.8, 1.2));
+  const auto mesh =
+    MakeBox(glm::dvec3(14.2, 9.1, 13.7), glm::dvec3(50.6, 30.3, 40.2), glm::ivec3(10, 8, 8));
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-1.5, 1.5);
+  const auto active = AddActiveTetrahedra(volume);
   Kept subject(volume, mesh, 9.0);
-  subject.Update();
-  for (const int addedNodes : { 0, 3000 })
+  subject.Filter->SetOutputBoundsModeToVolumeBounds();
+  subject.Filter->Update();
+  const vtkIdType nodes = mesh->GetNumberOfPoints();
+  vtkIdType parts = 0;
+  for (int step = 0; step < 7; ++step)
   {
-    for (int i = 0; i < addedNodes; ++i)
+    vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+    for (int i = 0; i < 1 + step % 3; ++i)
     {
-      mesh->GetPoints()->InsertNextPoint(0.0, 0.0, 0.0);
-      mesh->GetPointData()->GetVectors()->InsertNextTuple3(0.0, 0.0, 0.0);
+      const auto node = static_cast<vtkIdType>(random() % static_cast<unsigned int>(nodes));
+      vectors->SetTuple3(node, uniform(random), uniform(random), uniform(random));
     }
-    mesh->GetPoints()->Modified();
-    mesh->GetPointData()->GetVectors()->Modified();
-    mesh->Modified();
-    subject.Filter->SetFadeDistance(8.0);
-    Kept fresh(volume, mesh, 8.0);
-    EXPECT_TRUE(AreEqual(subject.Update(), fresh.Update()));
-    EXPECT_EQ(GetReported(subject.Filter, "Static mappings made"), addedNodes == 0 ? 2 : 3);
+    vectors->Modified();
+    if (step % 4 == 1)
+    {
+      const auto cell =
+        static_cast<vtkIdType>(random() % static_cast<unsigned int>(volume->GetNumberOfCells()));
+      active->SetValue(cell, static_cast<unsigned char>(random() % 31));
+      active->Modified();
+    }
+    if (step == 3 || step == 5)
+    {
+      // Some tetrahedra get a node of their own at the position of a shared node.
+      vtkPoints* points = mesh->GetPoints();
+      for (vtkIdType cell = step; cell < mesh->GetNumberOfCells(); cell += 400)
+      {
+        vtkNew<vtkIdList> ids;
+        mesh->GetCellPoints(cell, ids);
+        double point[3];
+        points->GetPoint(ids->GetId(1), point);
+        const vtkIdType twin = points->InsertNextPoint(point);
+        vectors->InsertNextTuple3(0.5, -0.5, 0.25);
+        ids->SetId(1, twin);
+        mesh->GetCells()->ReplaceCellAtId(cell, ids);
+      }
+      mesh->GetCells()->Modified();
+      points->Modified();
+      vectors->Modified();
+      mesh->Modified();
+    }
+    subject.Filter->Update();
+    EXPECT_EQ(subject.TakeErrors(), 0);
+    parts += GetReported(subject.Filter, "Bricks resampled") <
+      GetReported(subject.Filter, "Bricks of the volume");
+    Kept fresh(volume, mesh, 9.0);
+    fresh.Filter->SetOutputBoundsModeToVolumeBounds();
+    fresh.Filter->Update();
+    EXPECT_EQ(fresh.TakeErrors(), 0);
+    EXPECT_TRUE(AreEqual(subject.Filter->GetOutput(), fresh.Filter->GetOutput()));
+    EXPECT_EQ(subject.Filter->GetNumberOfCoveredVoxels(), fresh.Filter->GetNumberOfCoveredVoxels());
   }
+  EXPECT_GT(parts, 2);
+  // The static mapping is kept after splits, and built again for another FadeDistance.
+  EXPECT_EQ(GetReported(subject.Filter, "Static mappings made"), 1);
+  subject.Filter->SetFadeDistance(8.0);
+  subject.Filter->Update();
+  EXPECT_EQ(GetReported(subject.Filter, "Static mappings made"), 2);
+  // More new nodes than the static mapping has reserve for.
+  vtkDataArray* vectors = mesh->GetPointData()->GetVectors();
+  for (int i = 0; i < 3000; ++i)
+  {
+    mesh->GetPoints()->InsertNextPoint(0.0, 0.0, 0.0);
+    vectors->InsertNextTuple3(0.0, 0.0, 0.0);
+  }
+  mesh->GetPoints()->Modified();
+  vectors->Modified();
+  mesh->Modified();
+  subject.Filter->Update();
+  EXPECT_EQ(subject.TakeErrors(), 0);
+  Kept fresh(volume, mesh, 8.0);
+  fresh.Filter->SetOutputBoundsModeToVolumeBounds();
+  fresh.Filter->Update();
+  EXPECT_TRUE(AreEqual(subject.Filter->GetOutput(), fresh.Filter->GetOutput()));
 }
 
 // A sheet cuts kept tissue, and a smooth cut opens there. The reference is a field with the

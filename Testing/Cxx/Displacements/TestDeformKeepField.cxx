@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -303,6 +304,62 @@ TEST(DeformKeepField, Inverse)
       }
     }
   }
+}
+
+// Displacements, masks and FadeDistance change. The output must be equal to that of a new filter.
+TEST(DeformKeepField, Incremental)
+{
+  const auto volume = MakeTissueVolume(false);
+  const auto field = MakeField(volume, 1.0, false);
+  const auto active = AddActiveTetrahedra(volume);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.5, 1.5);
+  double distance = 7.0;
+  Kept subject(volume, field, distance);
+  subject.Filter->SetOutputBoundsModeToVolumeBounds();
+  subject.Filter->Update();
+  vtkIdType parts = 0;
+  for (int step = 0; step < 6; ++step)
+  {
+    vtkDataArray* vectors = field->GetPointData()->GetVectors();
+    const auto points = static_cast<unsigned int>(field->GetNumberOfPoints());
+    vectors->SetTuple3(
+      static_cast<vtkIdType>(random() % points), uniform(random), uniform(random), uniform(random));
+    vectors->Modified();
+    if (step % 4 == 1)
+    {
+      active->SetValue(
+        static_cast<vtkIdType>(random() % static_cast<unsigned int>(volume->GetNumberOfCells())),
+        static_cast<unsigned char>(random() % 31));
+      active->Modified();
+    }
+    if (step == 4)
+    {
+      distance = 5.0;
+      subject.Filter->SetFadeDistance(distance);
+    }
+    subject.Filter->Update();
+    EXPECT_EQ(subject.TakeErrors(), 0);
+    parts += GetReported(subject.Filter, "Bricks resampled") <
+      GetReported(subject.Filter, "Bricks of the volume");
+    Kept fresh(volume, field, distance);
+    fresh.Filter->SetOutputBoundsModeToVolumeBounds();
+    fresh.Filter->Update();
+    EXPECT_EQ(fresh.TakeErrors(), 0);
+    EXPECT_TRUE(AreEqual(subject.Filter->GetOutput(), fresh.Filter->GetOutput()));
+  }
+  EXPECT_GT(parts, 1);
+}
+
+// Pieces are equal to parts of the whole output.
+TEST(DeformKeepField, PiecesOfInverseFields)
+{
+  const auto volume = MakeTissueVolume(false);
+  Kept subject(volume, MakeField(volume, 1.0, true), 6.0);
+  subject.Filter->FieldIsInverseOn();
+  vtkNew<vtkImageData> whole;
+  whole->DeepCopy(subject.Expect(""));
+  VerifyPieces(subject, 4, whole);
 }
 
 // From a source that makes parts, only voxels that may be in the requested piece are requested.

@@ -188,6 +188,9 @@ TEST(ExtraArrays, Affine)
       {
         Derived subject(volume, deformation);
         subject.Filter->SetFieldIsInverse(deformation == backField);
+        subject.Filter->SetInterpolation(isOblique && !hasReference
+            ? vtkDeformVolumeFilter::CUBIC_INTERPOLATION
+            : vtkDeformVolumeFilter::LINEAR_INTERPOLATION);
         subject.Filter->SetReferenceData(hasReference ? fixed : nullptr);
         vtkImageData* output = subject.Expect("");
         vtkIdType covered = 0;

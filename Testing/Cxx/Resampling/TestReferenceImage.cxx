@@ -300,7 +300,8 @@ TEST(ReferenceImage, ThinReferences)
       layer->SetExtent(const_cast<int*>(extent.data()));
       OnReference thin(volume, nullptr, layer);
       set(thin);
-      EXPECT_TRUE(IsPartOf(thin.Update(), expected));
+      EXPECT_EQ(GetExtent(thin.Update()), extent);
+      EXPECT_TRUE(IsPartOf(thin.Filter->GetOutput(), expected));
       EXPECT_EQ(thin.TakeWarning(), "");
       EXPECT_GT(thin.Filter->GetNumberOfCoveredVoxels(), 0);
     }
