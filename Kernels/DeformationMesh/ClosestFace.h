@@ -35,8 +35,8 @@ public:
   /// are no triangles. nearby: a triangle that may be close, or -1. It makes the search faster and
   /// does not change the result.
   Result Find(const glm::dvec3& point, std::int32_t nearby = -1) const;
-  /// As Find(), but distances that differ only by rounding count as the same. Beyond the edge
-  /// between two triangles, Find() takes either of them, from point to point.
+  /// As Find(), but returns the first of the triangles whose distances differ only by rounding.
+  /// Beyond the edge between two triangles, Find() takes either of them, from point to point.
   Result FindFirst(const glm::dvec3& point) const;
 
 private:

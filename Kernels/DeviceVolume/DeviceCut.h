@@ -18,7 +18,8 @@ namespace deformvolume
 /// A smooth cut on the device: the list of the vertices of crossed cells, with their distances from
 /// the sheet and the positions of their copies on the other side (CutPositions.cl). The memory is
 /// proportional to the size of the cut, not of the volume. The vertices and cells to report are
-/// those whose states or active tetrahedra may have changed.
+/// those that may have become sources or are no longer sources, and those whose active tetrahedra
+/// may have changed: stencils depend on these up to BrickGrid::HaloOfCuts voxels away.
 class DeviceCut : public PartialUpdate
 {
 public:

@@ -157,12 +157,11 @@ void Write(const cl::CommandQueue& queue, const cl::Buffer& buffer, std::uint64_
   BeginToWrite(queue, buffer, offset, bytes, data).Check();
 }
 
-// The following copies do not write to the data.
 PendingCopy BeginToWrite(const cl::CommandQueue& queue, const cl::Buffer& buffer,
   std::uint64_t offset, std::uint64_t bytes, const void* data)
 {
   return BeginToCopy(
-    queue, buffer, CopiedBox::MakeRange(offset, bytes), const_cast<void*>(data), false);
+    queue, buffer, CopiedBox::MakeRange(offset, bytes), const_cast<void*>(data), false); // is read
 }
 
 void WriteBox(const cl::CommandQueue& queue, const cl::Buffer& buffer, const Extent& whole,

@@ -15,9 +15,15 @@ namespace deformvolume
 
 void MeshRasterizer::SetField(const DisplacementField& inverse)
 {
-  const cl::Buffer last = this->FieldVectors;
-  this->Clear();
-  this->FieldVectors = last;
+  cl::Buffer vectors = this->FieldVectors;
+  this->Clear(); // there is no field if a call below throws
+  std::uint64_t bytes = 3 * sizeof(float);
+  for (const int size : inverse.Dimensions)
+  {
+    bytes *= static_cast<std::uint64_t>(size);
+  }
+  CheckAllocation(bytes, this->Device->GetAllocationLimit(),
+    "The vectors of the displacement field", "Use a coarser field");
   for (std::size_t i = 0; i < inverse.IndexToField.size(); ++i)
   {
     this->Field.OutputToField[i] = static_cast<float>(inverse.IndexToField[i]);
@@ -28,14 +34,8 @@ void MeshRasterizer::SetField(const DisplacementField& inverse)
   this->Field.Extrapolate = inverse.Extrapolate;
   std::transform(inverse.Fading.begin(), inverse.Fading.end(), this->Field.Fading,
     [](double step) { return static_cast<float>(step); });
-  std::uint64_t bytes = 3 * sizeof(float);
-  for (const int size : inverse.Dimensions)
-  {
-    bytes *= static_cast<std::uint64_t>(size);
-  }
-  CheckAllocation(bytes, this->Device->GetAllocationLimit(),
-    "The vectors of the displacement field", "Use a coarser field");
-  this->Device->Send(this->FieldVectors, inverse.Vectors, static_cast<std::size_t>(bytes));
+  this->Device->Send(vectors, inverse.Vectors, static_cast<std::size_t>(bytes));
+  this->FieldVectors = vectors;
 }
 
 std::size_t MeshRasterizer::GetNumberOfNodes() const

@@ -96,7 +96,7 @@ void DeviceSession::SetMasks(const WorldMasks& masks, const Stamp& stamp)
       this->Deformer.SetBlanked(masks.Blanked, masks.BlankedBits, masks.WrittenBlanked);
       this->Deformer.SetActiveTetrahedra(masks.ActiveTetrahedra, masks.WrittenActive);
       this->Deformer.SetBoundaryDistances(masks.BoundaryDistances, masks.WrittenDistances);
-      if (!masks.HasSameCut)
+      if (!masks.HasSameCut || this->SentMasks.empty())
       {
         this->Deformer.SetCut(masks.CutTetrahedra, masks.CutDistances);
       }

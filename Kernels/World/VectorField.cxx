@@ -27,8 +27,7 @@ void CheckFinite(std::size_t notFinite, std::size_t count)
   {
     throw Error("Vector " + std::to_string(notFinite) +
       " of the displacement field is not finite. Remove NaN and infinity from it, or mark its "
-      "point "
-      "as undefined.");
+      "point as undefined.");
   }
 }
 
