@@ -380,7 +380,7 @@ void SessionPipeline::TryBeginGrab(double handle, const glm::dvec3& position)
   if (!isPossible)
   {
     throw std::runtime_error("The grabbed position " + FormatShort(&position.x) +
-      " is outside the deformed volume. Grab a position within it.");
+      " is outside the deformed volume, or in a gap of its tissue. Grab visible tissue.");
   }
   if (this->GetElastic())
   {

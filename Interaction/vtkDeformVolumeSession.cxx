@@ -393,8 +393,12 @@ double vtkDeformVolumeSession::GetBackgroundValue()
 
 void vtkDeformVolumeSession::AddCategoricalArray(const std::string& name)
 {
-  const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
-  if (this->Internals->Sampling.CategoricalArrays.insert(name).second)
+  bool isNew = false;
+  {
+    const std::lock_guard<std::mutex> lock(this->Internals->QueueMutex);
+    isNew = this->Internals->Sampling.CategoricalArrays.insert(name).second;
+  }
+  if (isNew) // not while the mutex is locked, as observers may call the session
   {
     this->Modified();
   }
@@ -481,16 +485,18 @@ vtkImageData* vtkDeformVolumeSession::TakeOutput()
 
 vtkDataSet* vtkDeformVolumeSession::CopyDeformation()
 {
-  if (!this->CheckInputs())
+  vtkSmartPointer<vtkDataSet> copy;
+  const auto make = [&]
   {
-    return nullptr;
-  }
-  const vtkInternals::Access access(*this->Internals);
-  vtkDataSet* deformation = this->Internals->Pipeline.GetDeformation();
-  vtkDataSet* copy = deformation ? deformation->NewInstance() : nullptr;
-  if (copy)
+    vtkDataSet* deformation = this->Internals->Pipeline.GetDeformation();
+    const auto made = vtk::TakeSmartPointer(deformation->NewInstance());
+    made->DeepCopy(deformation);
+    copy = made;
+    return true;
+  };
+  if (this->CheckInputs() && this->UsePipeline(make))
   {
-    copy->DeepCopy(deformation);
+    copy->Register(nullptr); // for the caller
   }
   return copy;
 }

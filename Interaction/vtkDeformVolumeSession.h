@@ -277,7 +277,7 @@ public:
   VTK_NEWINSTANCE vtkImageData* TakeOutput();
 
   /**
-   * Get a copy of the deformation after the last update, or null if there is no volume: a
+   * Get a copy of the deformation after the last update, or null after an error: a
    * vtkImageData or a vtkUnstructuredGrid, at rest, with the displacements as active vectors. By
    * it vtkDeformGeometryFilter moves surfaces and landmarks, and vtkDeformVolumeFilter other
    * volumes. It does not contain cuts and carvings, except that the mesh of MASS_SPRING and
