@@ -29,15 +29,18 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
+#include <map>
 #include <set>
 #include <vector>
 
 namespace
 {
 // Gives tetrahedra the mean of the materials of their voxels. find(voxel): the index of a material.
+// what: what is found, for messages.
 template <typename Find>
-vtkSmartPointer<vtkUnstructuredGrid> AddMeans(vtkMaterialFromVolume* filter, vtkImageData* volume,
-  vtkUnstructuredGrid* mesh, const Options& options, Messages& messages, const Find& find)
+vtkSmartPointer<vtkUnstructuredGrid> AddMeans(const std::string& what,
+  vtkMaterialFromVolume* filter, vtkImageData* volume, vtkUnstructuredGrid* mesh,
+  const Options& options, Messages& messages, const Find& find)
 {
   vtkNew<vtkUnsignedCharArray> indices;
   indices->SetName("deform-volume: materials"); // arrays of files are unlikely to have this name
@@ -52,9 +55,9 @@ vtkSmartPointer<vtkUnstructuredGrid> AddMeans(vtkMaterialFromVolume* filter, vtk
   filter->SetInputData(mesh);
   filter->SetVolumeData(image);
   filter->SetMaterialArrayName(indices->GetName());
-  const ProgressBar bar(filter, "materials", !options.Quiet);
+  const ProgressBar bar(filter, what, !options.Quiet);
   filter->Update();
-  messages.Check("cannot find the materials of the mesh");
+  messages.Check("cannot find the " + what + " of the mesh");
   return filter->GetOutput();
 }
 
@@ -63,39 +66,42 @@ vtkSmartPointer<vtkUnstructuredGrid> AddMeans(vtkMaterialFromVolume* filter, vtk
 void FixLabels(const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh,
   vtkUnsignedCharArray* fixed, Messages& messages)
 {
-  std::vector<double> labels;
+  std::map<double, bool> isUsed; // for each label
   for (const Fixation& fixation : options.Fixations)
   {
     if (fixation.Which == Fixation::Kind::Label)
     {
-      labels.push_back(fixation.Value);
+      isUsed[fixation.Value] = false;
     }
   }
-  if (labels.empty())
+  if (isUsed.empty())
   {
     return;
   }
   vtkDataArray* values = volume.GetLabels();
-  std::vector<bool> isUsed(labels.size(), false);
   const auto has = [&](vtkIdType voxel)
   {
-    const auto found = std::find(labels.begin(), labels.end(), values->GetComponent(voxel, 0));
-    return found != labels.end() && (isUsed[found - labels.begin()] = true);
+    const auto found = isUsed.find(values->GetComponent(voxel, 0));
+    return found != isUsed.end() && (found->second = true);
   };
   // The mean density of a tetrahedron minus 1 is the share of its voxels with a label.
   vtkNew<vtkMaterialFromVolume> filter;
   filter->SetMaterial(0, 1.0, 0.0, 1.0);
   filter->SetMaterial(1, 1.0, 0.0, 2.0);
-  const auto means = AddMeans(filter, volume.Image, mesh, options, messages, has);
+  filter->SetDefaultMaterial(0);
+  const auto means =
+    AddMeans("labels of --fix", filter, volume.Image, mesh, options, messages, has);
   vtkDataArray* densities = means->GetCellData()->GetArray("Density");
-  const auto unused = std::find(isUsed.begin(), isUsed.end(), false);
-  if (unused != isUsed.end())
+  for (const Fixation& fixation : options.Fixations)
   {
-    double range[2];
-    values->GetFiniteRange(range, 0);
-    throw Failure(MakeText("--fix label:", labels[unused - isUsed.begin()], ": no voxel of ",
-      volume.Labels ? "--label-volume" : "the volume", " has this value. Values are ", range[0],
-      " to ", range[1]));
+    if (fixation.Which == Fixation::Kind::Label && !isUsed[fixation.Value])
+    {
+      double range[2];
+      values->GetFiniteRange(range, 0);
+      throw Failure("--fix " + fixation.Text + ": no voxel of " +
+        MakeText(volume.Labels ? "--label-volume" : "the volume", " has this value. Values are ",
+          range[0], " to ", range[1]));
+    }
   }
   for (vtkIdType node = 0; node < mesh->GetNumberOfPoints(); ++node)
   {
@@ -108,11 +114,14 @@ void FixLabels(const Options& options, const Volume& volume, vtkUnstructuredGrid
   vtkNew<vtkIdList> nodes;
   for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
   {
-    mesh->GetCellPoints(cell, nodes);
-    for (vtkIdType i = 0; i < nodes->GetNumberOfIds() && densities->GetComponent(cell, 0) >= 1.5;
-         ++i)
+    if (densities->GetComponent(cell, 0) < 1.5)
     {
-      fixed->SetValue(nodes->GetId(i), 1);
+      continue;
+    }
+    mesh->GetCellPoints(cell, nodes);
+    for (const vtkIdType node : *nodes)
+    {
+      fixed->SetValue(node, 1);
     }
   }
   double all = 0.0;
@@ -159,8 +168,12 @@ void AddFixedNodes(const Options& options, const Volume& volume, vtkUnstructured
     1e-3 * std::min({ std::abs(spacing[0]), std::abs(spacing[1]), std::abs(spacing[2]) });
   for (const Fixation& fixation : options.Fixations)
   {
-    bool isAny = fixation.Which == Fixation::Kind::Label; // see FixLabels()
-    for (vtkIdType node = 0; node < number && fixation.Which != Fixation::Kind::Label; ++node)
+    if (fixation.Which == Fixation::Kind::Label)
+    {
+      continue; // see FixLabels()
+    }
+    bool isAny = false;
+    for (vtkIdType node = 0; node < number; ++node)
     {
       if (Fixes(fixation, mesh->GetPoint(node), tolerance))
       {
@@ -262,7 +275,7 @@ void AddMaterials(
   }
   vtkDataArray* values = volume.Image->GetPointData()->GetScalars();
   vtkDataArray* labels = volume.GetLabels();
-  mesh->ShallowCopy(AddMeans(filter, volume.Image, mesh, options, messages,
+  mesh->ShallowCopy(AddMeans("materials", filter, volume.Image, mesh, options, messages,
     [&](vtkIdType voxel)
     {
       for (int i = 0; i < index; ++i)
@@ -445,7 +458,8 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
     const double speed = FindLongest(displacements, before) / seconds;
     deformation.Motion = MakeText(options.Duration, " s, in steps of ", 1e3 * step,
       " ms, at the end at up to ", std::setprecision(3), speed, " mm/s");
-    if (options.Movie.empty() && speed > 0.1 * FindLongest(displacements))
+    constexpr double fast = 0.1; // of the longest displacement, in a second
+    if (options.Movie.empty() && speed > fast * FindLongest(displacements))
     {
       messages.Warn(MakeText(std::setprecision(3), "The springs still move by up to ", speed,
         " mm/s at the end of --duration. Use a longer one, or --model fem, for the "

@@ -149,7 +149,7 @@ void CheckArrays(const Options& options, vtkPointData* arrays)
 void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* volume,
   const LabelVolume& labels, vtkImageData* reference, const Deformation& deformation)
 {
-  filter->SetInputData(labels.AddTo(volume, filter));
+  filter->SetInputData(options.LabelOutputs.empty() ? volume : labels.AddTo(volume, filter).Get());
   filter->SetReferenceData(reference);
   SetDeformation(filter, options, deformation);
   filter->SetOpenSplits(options.OpenSplits || options.CutsMesh());
@@ -436,7 +436,7 @@ void DeformVolume(const Options& options, Messages& messages)
     result.Forms = reference.Forms;
   }
   const Stopwatch writing;
-  if (!labels.IsEmpty())
+  if (!options.LabelOutputs.empty())
   {
     Volume deformedLabels = result;
     deformedLabels.Image = labels.TakeFrom(result.Image);
@@ -455,7 +455,7 @@ void DeformVolume(const Options& options, Messages& messages)
     WriteVolume(result, output, messages, !options.Quiet);
   }
   if (!options.Outputs.empty() || !options.Jacobians.empty() || !options.InverseFields.empty() ||
-    !labels.IsEmpty())
+    !options.LabelOutputs.empty())
   {
     timings.Add("write volume", writing.GetSeconds());
   }

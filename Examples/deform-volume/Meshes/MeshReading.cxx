@@ -279,8 +279,7 @@ std::map<double, std::vector<std::string>> FindFiles(const Source& source)
     {
       source.Log.Warn(source.Path + " names " + std::to_string(count) +
         " files with the same attributes timestep and part, or without them. They are read as "
-        "parts "
-        "of one mesh.");
+        "parts of one mesh.");
     }
   }
   return files;
