@@ -116,8 +116,8 @@ public:
   ///@{
   /**
    * Set/Get whether the points of the mesh on port 1 are deformed already, as vtkExodusIIReader
-   * gives them if the name of the displacements begins with DIS. The rest positions are then the
-   * points minus the displacements. An error with port 2 and with a field. Default: off.
+   * gives them if the name of the displacements begins with dis or DIS. The rest positions are then
+   * the points minus the displacements. An error with port 2 and with a field. Default: off.
    */
   vtkSetMacro(PointsAreDeformed, bool);
   vtkGetMacro(PointsAreDeformed, bool);

@@ -245,14 +245,21 @@ void vtkElasticDeformation::Execute(
   ElasticSimulation& simulation = this->PrepareSimulation();
   settings.IsQuadratic = simulation.IsQuadratic();
   deformvolume::ProgressReport progress(this);
+  // All ranks simulate, so that each has the same body if it requests the first piece or the whole
+  // later. Only one of them displays warnings and has an output.
+  const bool isFirst = deformvolume::IsFirstPiece(outputVector);
   if (session.Update(simulation, grid, deformvolume::GetWrittenStamp(this, 0), settings,
-        [&] { return progress.Report(0.0); }))
+        [&] { return progress.Report(0.0); }) &&
+    isFirst)
   {
     vtkWarningMacro(
       "The simulation starts again from rest, because the points, the cells or the unit of length "
       "of the rest mesh have changed, or because a failed update lost the state of the body.");
   }
-  this->CheckSize(session.GetMesh().Size);
+  if (isFirst)
+  {
+    this->CheckSize(session.GetMesh().Size);
+  }
   const bool wasToReset = internals.IsToReset;
   bool isToReset = this->StartsAgain(info);
   std::size_t cuts = session.GetNumberOfCuts();
@@ -295,13 +302,14 @@ void vtkElasticDeformation::Execute(
     session.Lose();
     throw;
   }
-  for (const std::string& warning : simulation.TakeWarnings())
+  const std::vector<std::string> warnings = simulation.TakeWarnings();
+  if (!isFirst)
+  {
+    return;
+  }
+  for (const std::string& warning : warnings)
   {
     vtkWarningMacro(<< warning);
-  }
-  if (!deformvolume::IsFirstPiece(outputVector))
-  {
-    return; // other ranks request the whole later, and must have the same body then
   }
   output->ShallowCopy(session.GetGrid(grid));
   vtkDataArray* displacements = simulation.WriteOutput(1.0 / settings.UnitLength);

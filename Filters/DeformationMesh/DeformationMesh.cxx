@@ -104,9 +104,10 @@ std::string DescribePart(const MeshParts& parts, std::size_t part, const std::st
 
 void CheckParts(const MeshParts& parts, vtkDataObject* object, const std::string& name)
 {
-  constexpr const char* connect =
-    ". Connect a vtkUnstructuredGrid with tetrahedra, or a "
-    "vtkStructuredGrid, vtkExplicitStructuredGrid or vtkRectilinearGrid.";
+  const std::string connect =
+    ". Connect a vtkUnstructuredGrid with tetrahedra, a vtkStructuredGrid, "
+    "a vtkExplicitStructuredGrid or a vtkRectilinearGrid" +
+    std::string(name == MESH_NAME ? ", or vtkImageData as a displacement field." : ".");
   if (parts.empty() && !parts.Ignored.empty())
   {
     throw Error("The composite dataset that is the " + name +

@@ -95,6 +95,8 @@ def _stamp(*objects):
             # Arrays are borrowed. Resizing allocates other memory, but does not always change the time.
             values = vtk_to_numpy(one)
             stamps += (values.ctypes.data, values.size)
+        if isinstance(one, vtkRectilinearGrid):  # its time leaves out that of its coordinates
+            stamps += _stamp(one.GetXCoordinates(), one.GetYCoordinates(), one.GetZCoordinates())
         return stamps
 
     return tuple(None if one is None else stamp(one) for one in objects)
