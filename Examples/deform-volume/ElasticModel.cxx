@@ -345,16 +345,14 @@ std::string DescribeCut(vtkElasticDeformation* model, vtkPolyData* sheet, Messag
                         FindDistance(model->GetOutput(), sheet), " mm from the sheet");
 }
 
-// Returns the length of the longest vector, or of the longest difference from the vectors before.
-double FindLongest(vtkDataArray* vectors, vtkDataArray* before = nullptr)
+// Returns the length of the longest difference between vectors of two arrays.
+double FindLongestDifference(vtkDataArray* vectors, vtkDataArray* others)
 {
   double longest = 0.0;
   for (vtkIdType i = 0; i < vectors->GetNumberOfTuples(); ++i)
   {
-    const std::array<double, 3> origin{};
-    longest = std::max(longest,
-      vtkMath::Distance2BetweenPoints(
-        vectors->GetTuple(i), before ? before->GetTuple(i) : origin.data()));
+    longest =
+      std::max(longest, vtkMath::Distance2BetweenPoints(vectors->GetTuple(i), others->GetTuple(i)));
   }
   return std::sqrt(longest);
 }
@@ -455,11 +453,11 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
         simulate(part);
       });
     vtkDataArray* displacements = model->GetOutput()->GetPointData()->GetArray("Displacement");
-    const double speed = FindLongest(displacements, before) / seconds;
+    const double speed = FindLongestDifference(displacements, before) / seconds;
     deformation.Motion = MakeText(options.Duration, " s, in steps of ", 1e3 * step,
       " ms, at the end at up to ", std::setprecision(3), speed, " mm/s");
     constexpr double fast = 0.1; // of the longest displacement, in a second
-    if (options.Movie.empty() && speed > fast * FindLongest(displacements))
+    if (options.Movie.empty() && speed > fast * displacements->GetMaxNorm())
     {
       messages.Warn(MakeText(std::setprecision(3), "The springs still move by up to ", speed,
         " mm/s at the end of --duration. Use a longer one, or --model fem, for the "
