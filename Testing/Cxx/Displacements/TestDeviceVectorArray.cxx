@@ -2,6 +2,7 @@
 // The interfaces of VTK arrays for vtkDeviceVectorArray, with values on the host and with vectors
 // of a device.
 #include "FilterTesting.h"
+#include "ImageFiles.h"
 #include "RunTests.h"
 #include "vtkArrayChanges.h"
 #include "vtkDeviceVectorArray.h"
@@ -13,8 +14,6 @@
 #include <vtkArrayIteratorTemplate.h>
 #include <vtkIdList.h>
 #include <vtkVariant.h>
-#include <vtkXMLImageDataReader.h>
-#include <vtkXMLImageDataWriter.h>
 
 #include <string>
 #include <vector>
@@ -231,15 +230,8 @@ TEST(DeviceVectorArray, Writer)
   array->SetName("vectors");
   array->SetVectors(MakeVectors(50));
   image->GetPointData()->SetVectors(array);
-  const std::string name = GetTestArgument("-T") + "/TestDeviceVectorArray.vti";
-  vtkNew<vtkXMLImageDataWriter> writer;
-  writer->SetInputData(image);
-  writer->SetFileName(name.c_str());
-  EXPECT_EQ(writer->Write(), 1);
-  vtkNew<vtkXMLImageDataReader> reader;
-  reader->SetFileName(name.c_str());
-  reader->Update();
-  vtkDataArray* read = reader->GetOutput()->GetPointData()->GetArray("vectors");
+  const auto found = WriteAndRead(image, "TestDeviceVectorArray.vti");
+  vtkDataArray* read = found->GetPointData()->GetArray("vectors");
   EXPECT_TRUE(read && Has(read, MakeNumbers(50)));
   vtkNew<vtkImageData> copy;
   copy->DeepCopy(image);

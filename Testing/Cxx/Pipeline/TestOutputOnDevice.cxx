@@ -4,6 +4,7 @@
 #include "ArrayMaking.h"
 #include "FakeDriver.h"
 #include "FilterTesting.h"
+#include "ImageFiles.h"
 #include "RunTests.h"
 
 #include "Device.h"
@@ -17,8 +18,6 @@
 #include <vtkSMPTools.h>
 #include <vtkShortArray.h>
 #include <vtkVariant.h>
-#include <vtkXMLImageDataReader.h>
-#include <vtkXMLImageDataWriter.h>
 
 #include <cstdint>
 #include <functional>
@@ -387,19 +386,8 @@ TEST(OutputOnDevice, Filters)
       EXPECT_NE(vtkIdTypeArray::SafeDownCast(GetArray(copy, "id")), nullptr);
       return vtkSmartPointer<vtkDataObject>(copy);
     });
-  compare(
-    [](vtkImageData* image)
-    {
-      const std::string name = GetTestArgument("-T") + "/TestOutputOnDevice.vti";
-      vtkNew<vtkXMLImageDataWriter> writer;
-      writer->SetInputData(image);
-      writer->SetFileName(name.c_str());
-      EXPECT_EQ(writer->Write(), 1);
-      vtkNew<vtkXMLImageDataReader> reader;
-      reader->SetFileName(name.c_str());
-      reader->Update();
-      return vtkSmartPointer<vtkDataObject>(reader->GetOutput());
-    });
+  compare([](vtkImageData* image)
+    { return vtkSmartPointer<vtkDataObject>(WriteAndRead(image, "TestOutputOnDevice.vti")); });
   // The output as the volume of another filter on the same device.
   both.Move(0.1);
   both.Update();
