@@ -273,10 +273,10 @@ public:
   ///@{
   /**
    * Names of point arrays that hold amounts per unit of volume, such as a dose. Their values are
-   * divided by the Jacobian, so that their sum is kept. They are 0, and not BackgroundValue, where
-   * the deformed volume covers no voxel or is inside out. The output array is of type double if the
-   * array of the volume is, else of type float. It is an error if an array is missing or
-   * categorical, and for meshes with MESH_RASTERIZATION. Default: none.
+   * divided by the change of volume, so that their sum is kept. They are 0, and not
+   * BackgroundValue, where the deformed volume covers no voxel or is inside out. The output array
+   * is of type double if the array of the volume is, else of type float. It is an error if an array
+   * is missing or categorical, and for meshes with MESH_RASTERIZATION. Default: none.
    */
   void AddDensityArray(const char* name);
   void RemoveDensityArray(const char* name);

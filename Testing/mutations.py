@@ -388,7 +388,6 @@ MUTATIONS = {
     "world-boundary": ("Kernels/World/WorldEdits.cxx", "this->BaseDistancesAreOld = true;", "", ["Cxx.TestCEdits"]),
     "world-small": ("Kernels/World/WorldBoxes.cxx", "    if (!IsSmall(box, volume))", "    if (true)",
                     ["Cxx.TestDeformMisuse"]),
-    "world-density": ("Kernels/World/WorldDeformer.cxx", "this->DensityCopies.clear();", "", ["Cxx.TestCUpdates"]),
     "cut-pair": ("Filters/Arrays/MaskArray.cxx", "(crossed != nullptr) != (cut.Distances.Values != nullptr)", "false",
                  ["Cxx.TestDeformMasks", "Cxx.TestSmoothCut"]),
     "material-range": ("Kernels/SamplingMesh/VoxelMaterials.h", "number < range.Maximum", "number <= range.Maximum",

@@ -250,8 +250,8 @@ vtkDeformVolumeFilter::vtkInternals::Results vtkDeformVolumeFilter::vtkInternals
   deformvolume::ExecutionState& state = *this->State;
   const deformvolume::MappedVolume& mapped = inputs.Mapped;
   this->CheckMemory(inputs, request.OutputExtent, request.Method);
-  state.Extra.Compute(state.Deformation, state.Mapping, mapped, inputs.Deformation.ToOutput,
-    this->GetProgress(0.0, 0.3));
+  state.Extra.Compute(state.Deformation, state.Mapping, mapped, inputs.MaskedVolume,
+    this->Self->OpenSplits, inputs.Deformation.ToOutput, this->GetProgress(0.0, 0.3));
   this->SendVolume(inputs, request.Method);
   state.Device.SetDeformation(state.Deformation, state.Mapping, mapped, request.Method,
     this->Self->OpenSplits, this->GetProgress(0.0, 0.3));

@@ -57,7 +57,7 @@ void ExtraArrays::Select(const ExtraArraysRequest& request, const ImageGeometry&
   this->Request = request;
   this->Copies.erase(
     std::remove_if(this->Copies.begin(), this->Copies.end(),
-      [&](const Copy& copy) { return request.Densities.count(copy.Floats->GetName()) == 0; }),
+      [&](const Copy& copy) { return request.Densities.count(copy.Values->GetName()) == 0; }),
     this->Copies.end());
   for (const std::string& name : request.Densities)
   {
@@ -76,7 +76,7 @@ void ExtraArrays::Select(const ExtraArraysRequest& request, const ImageGeometry&
         "density arrays or from the categorical arrays. With nearest interpolation all arrays are "
         "categorical.");
     }
-    found->Array = this->FindFloats(found->Array);
+    found->Array = this->FindCopy(found->Array, deformation.IsInverseField());
     found->IsDensity = true;
   }
   const auto checkName = [&](const char* name)
@@ -148,34 +148,78 @@ void ExtraArrays::UpdateRestPositions(const ImageGeometry& whole, const Extent& 
   this->PositionsOrigin = origin;
 }
 
-vtkDataArray* ExtraArrays::FindFloats(vtkDataArray* density)
+vtkDataArray* ExtraArrays::FindCopy(vtkDataArray* density, bool isInverse)
 {
-  if (density->GetDataType() == VTK_FLOAT || density->GetDataType() == VTK_DOUBLE)
+  const int type = density->GetDataType() == VTK_DOUBLE ? VTK_DOUBLE : VTK_FLOAT;
+  if (isInverse && type == density->GetDataType())
   {
     return density;
   }
-  Stamp stamp;
-  AddArray(stamp, density);
   const auto last = std::find_if(this->Copies.begin(), this->Copies.end(),
-    [&](const Copy& copy) { return HasName(copy.Floats, density->GetName()); });
+    [&](const Copy& copy) { return HasName(copy.Values, density->GetName()); });
   Copy& copy = last != this->Copies.end() ? *last : this->Copies.emplace_back();
-  if (!copy.Floats || copy.DensityStamp != stamp)
+  copy.Density = density;
+  if (!copy.Values || copy.Values->GetDataType() != type ||
+    copy.Values->GetNumberOfComponents() != density->GetNumberOfComponents() ||
+    copy.Values->GetNumberOfTuples() != density->GetNumberOfTuples())
   {
-    copy.Floats = vtkSmartPointer<vtkFloatArray>::New();
-    copy.Floats->DeepCopy(density);
-    copy.DensityStamp = stamp;
+    copy.Values = vtk::TakeSmartPointer(vtkDataArray::CreateDataArray(type));
+    copy.Values->SetNumberOfComponents(density->GetNumberOfComponents());
+    copy.Values->SetNumberOfTuples(density->GetNumberOfTuples());
+    copy.ValuesStamp.clear();
   }
-  return copy.Floats;
+  CopyDescription(density, copy.Values);
+  return copy.Values;
+}
+
+void ExtraArrays::UpdateCopies()
+{
+  for (Copy& copy : this->Copies)
+  {
+    Stamp stamp;
+    AddArray(stamp, copy.Density);
+    AddArray(stamp, this->Jacobians);
+    if (copy.ValuesStamp == stamp)
+    {
+      continue;
+    }
+    copy.Values->DeepCopy(copy.Density);
+    const auto divide = [&](auto* values)
+    {
+      const float* divisors =
+        this->Ratios.empty() ? this->Jacobians->GetPointer(0) : this->Ratios.data();
+      DivideByJacobian(values, copy.Values->GetNumberOfComponents(), divisors, nullptr,
+        copy.Values->GetNumberOfTuples());
+    };
+    if (this->Jacobians && copy.Values->GetDataType() == VTK_DOUBLE)
+    {
+      divide(static_cast<double*>(copy.Values->GetVoidPointer(0)));
+    }
+    else if (this->Jacobians)
+    {
+      divide(static_cast<float*>(copy.Values->GetVoidPointer(0)));
+    }
+    copy.Values->Modified();
+    copy.ValuesStamp = stamp;
+  }
 }
 
 void ExtraArrays::Compute(const Deformation& deformation, MappingCache& mapping,
-  const MappedVolume& volume, const OutputMap& toOutput,
-  const std::function<bool(double)>& progress)
+  const MappedVolume& volume, vtkImageData* maskedVolume, bool openSplits,
+  const OutputMap& toOutput, const std::function<bool(double)>& progress)
 {
-  if (!this->Jacobians)
+  if (this->Jacobians)
   {
-    return;
+    this->UpdateJacobians(
+      deformation, mapping, volume, maskedVolume, openSplits, toOutput, progress);
   }
+  this->UpdateCopies();
+}
+
+void ExtraArrays::UpdateJacobians(const Deformation& deformation, MappingCache& mapping,
+  const MappedVolume& volume, vtkImageData* maskedVolume, bool openSplits,
+  const OutputMap& toOutput, const std::function<bool(double)>& progress)
+{
   const bool isMesh = !deformation.IsField();
   if (isMesh &&
     !(this->MappingVersion == mapping.GetVersion() &&
@@ -186,22 +230,29 @@ void ExtraArrays::Compute(const Deformation& deformation, MappingCache& mapping,
       deformation.GetRestPoints(), deformation.GetTetrahedra());
     this->MappingVersion = mapping.GetVersion();
   }
+  const bool needsRatios = isMesh && !this->Request.Densities.empty();
   const JacobiansKey key{ isMesh ? mapping.GetVersion() : 0, deformation.GetVectorsVersion(),
-    deformation.GetUndefinedVersion(), volume.Whole, toOutput, volume.Outside };
+    deformation.GetUndefinedVersion(), volume.Whole, toOutput, volume.Outside,
+    GetMasksStamp(maskedVolume), openSplits, needsRatios };
   if (this->KeyOfJacobians == key)
   {
     return;
   }
+  const VolumeMasks masks = ReadMasks(maskedVolume, {});
+  const HiddenTetrahedra hidden{ masks.Blanked, masks.BlankedBits, masks.Active, masks.Cut.Crossed,
+    openSplits };
   float* jacobians = this->Jacobians->GetPointer(0);
+  this->Ratios.resize(needsRatios ? static_cast<std::size_t>(GetNumberOfPoints(volume.Part)) : 0);
   if (isMesh)
   {
     this->MeshJacobians.Compute(toOutput, deformation.GetRestPoints(), deformation.GetTetrahedra(),
-      deformation.GetNodeDisplacements(), jacobians);
+      deformation.GetNodeDisplacements(), hidden, jacobians,
+      this->Ratios.empty() ? nullptr : this->Ratios.data());
   }
   else
   {
     ComputeFieldJacobians({ volume.Part, toOutput, volume.Whole.PointExtent },
-      deformation.GetField(volume.Outside), deformation.GetUndefinedPoints(), jacobians);
+      deformation.GetField(volume.Outside), deformation.GetUndefinedPoints(), hidden, jacobians);
   }
   this->Jacobians->Modified();
   this->KeyOfJacobians = key;
@@ -317,16 +368,26 @@ ExtraArrays::Loss ExtraArrays::FinishDensities(const Deformation& deformation,
   for (const std::string& name : this->Request.Densities)
   {
     // Do not change the resampled array: the next update may write only a part of it.
-    vtkDataArray* resampled = pointData->GetArray(name.c_str());
-    const auto divided = MakeArrayLike(resampled, voxels);
-    const int components = resampled->GetNumberOfComponents();
-    const void* values = resampled->GetVoidPointer(0);
-    loss.NumberOfVoxels = resampled->GetDataType() == VTK_DOUBLE
-      ? DivideByJacobian(static_cast<const double*>(values), components, jacobians, valid, voxels,
-          0.0, static_cast<double*>(divided->GetVoidPointer(0)))
-      : DivideByJacobian(static_cast<const float*>(values), components, jacobians, valid, voxels,
-          0.0F, static_cast<float*>(divided->GetVoidPointer(0)));
-    pointData->AddArray(divided);
+    const auto density = vtk::TakeSmartPointer(pointData->GetArray(name.c_str())->NewInstance());
+    density->DeepCopy(pointData->GetArray(name.c_str()));
+    const auto finish = [&](auto* values, auto zero)
+    {
+      const int components = density->GetNumberOfComponents();
+      if (deformation.IsInverseField())
+      {
+        DivideByJacobian(values, components, jacobians, valid, voxels);
+      }
+      loss.NumberOfVoxels = ClearInverted(values, components, jacobians, valid, voxels, zero);
+    };
+    if (density->GetDataType() == VTK_DOUBLE)
+    {
+      finish(static_cast<double*>(density->GetVoidPointer(0)), 0.0);
+    }
+    else
+    {
+      finish(static_cast<float*>(density->GetVoidPointer(0)), 0.0F);
+    }
+    pointData->AddArray(density);
   }
   if (!this->Request.Jacobian)
   {

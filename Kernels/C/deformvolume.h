@@ -192,7 +192,7 @@ extern "C"
      * voxel. */
     int32_t categorical;
     /** Not 0: the values are amounts per unit of volume, such as a dose or an activity. Values of
-     * the output are divided by the Jacobian determinant, so that their sum times the volume of a
+     * the output are divided by the change of volume, so that their sum times the volume of a
      * voxel is preserved. The output has doubles if the type is DV_FLOAT64, otherwise floats.
      * Output voxels at which the volume is inverted get the background. Amounts that folds hide are
      * missing from the sum; the warnings of dv_report give their size. Not allowed with labels,

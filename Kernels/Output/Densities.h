@@ -5,6 +5,7 @@
 #include "DeformVolumeExport.h"
 #include "ParallelFor.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -13,32 +14,39 @@
 namespace deformvolume
 {
 
-/// Divides the values of an output by the Jacobian determinants, so that the sum of a density over
-/// the volume stays the same. T: float or double. values: one tuple per voxel. valid: nonzero for
-/// covered voxels; the values of other voxels do not change. divided: receives the results; may be
-/// the same memory as `values`. Covered voxels whose Jacobian is not greater than 0 receive the
-/// background. Returns the number of these voxels.
+/// Divides values by Jacobian determinants, so that the sum of a density over the volume stays the
+/// same. T: float or double. values: one tuple per voxel. Voxels whose Jacobian is not greater than
+/// 0 receive 0. valid: zero for voxels that do not change; null: all change.
 template <typename T>
-std::int64_t DivideByJacobian(const T* values, int components, const float* jacobians,
-  const signed char* valid, std::int64_t voxels, T background, T* divided)
+void DivideByJacobian(
+  T* values, int components, const float* jacobians, const signed char* valid, std::int64_t voxels)
 {
-  std::atomic<std::int64_t> count{ 0 };
-  ParallelForParts(static_cast<std::size_t>(voxels), 1 << 16,
-    [&](std::size_t begin, std::size_t end)
+  ParallelForItems(static_cast<std::size_t>(voxels), 1 << 16,
+    [&](std::size_t i)
     {
       const auto width = static_cast<std::size_t>(components);
-      std::int64_t found = 0;
-      for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t k = i * width; k < (i + 1) * width && (!valid || valid[i]); ++k)
       {
-        const float jacobian = valid[i] ? jacobians[i] : 1.0F;
-        const bool isLost = !(jacobian > 0.0F);
-        found += isLost ? 1 : 0;
-        for (std::size_t k = i * width; k < (i + 1) * width; ++k)
-        {
-          divided[k] = isLost ? background : values[k] / static_cast<T>(jacobian);
-        }
+        values[k] = jacobians[i] > 0.0F ? values[k] / static_cast<T>(jacobians[i]) : T(0);
       }
-      count += found;
+    });
+}
+
+/// Writes the background to the covered voxels of an output whose Jacobian is not greater than 0.
+/// valid: nonzero for covered voxels. Returns the number of these voxels.
+template <typename T>
+std::int64_t ClearInverted(T* values, int components, const float* jacobians,
+  const signed char* valid, std::int64_t voxels, T background)
+{
+  std::atomic<std::int64_t> count{ 0 };
+  ParallelForItems(static_cast<std::size_t>(voxels), 1 << 16,
+    [&](std::size_t i)
+    {
+      if (valid[i] && !(jacobians[i] > 0.0F))
+      {
+        std::fill_n(values + i * static_cast<std::size_t>(components), components, background);
+        ++count;
+      }
     });
   return count;
 }

@@ -2,6 +2,7 @@
 #include "VoxelJacobians.h"
 
 #include "BarycentricMap.h"
+#include "FiveTetrahedra.h"
 #include "IndexBounds.h"
 #include "LinkExtrapolation.h"
 #include "ParallelFor.h"
@@ -10,14 +11,20 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 namespace deformvolume
 {
 
 namespace
 {
+
+constexpr std::int32_t NoTetrahedron = std::numeric_limits<std::int32_t>::min();
+constexpr double NotDefined = std::numeric_limits<double>::quiet_NaN();
 
 // Calls body(index, number) in parallel for the voxels of an extent.
 template <typename Body>
@@ -59,8 +66,7 @@ glm::dvec3 GetSlope(double low, double middle, double high, const Function& getV
     high = middle;
     after = getValue(high);
   }
-  return high > low ? (after - before) / (high - low)
-                    : glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+  return high > low ? (after - before) / (high - low) : glm::dvec3(NotDefined);
 }
 
 // The derivatives of a displacement field.
@@ -130,6 +136,18 @@ public:
     return alongField * this->Transform.Matrix;
   }
 
+  // Returns the displacement of a voxel. NaN if it is undefined, or if the voxel is discarded or
+  // outside within FieldTolerance: there it would be that of the border.
+  glm::dvec3 DisplaceVoxel(const glm::dvec3& index) const
+  {
+    constexpr double rounding = 1e-6;
+    const glm::dvec3 position = this->Transform.ToField(index);
+    const glm::dvec3 beyond = glm::max(-position, position - this->Transform.Last);
+    return this->Field.Extrapolate || std::max({ beyond.x, beyond.y, beyond.z }) <= rounding
+      ? this->Displace(position)
+      : glm::dvec3(NotDefined);
+  }
+
 private:
   // The derivative along an axis of the field; NaN if it is undefined on both sides.
   glm::dvec3 GetSlopeAt(const glm::dvec3& middle, int axis, double halfStep) const
@@ -170,7 +188,7 @@ private:
   {
     if (!this->Undefined.empty() && this->Undefined[static_cast<std::size_t>(point)] != 0)
     {
-      return glm::dvec3(std::numeric_limits<double>::quiet_NaN());
+      return glm::dvec3(NotDefined);
     }
     return this->IsMapped ? GetVector(this->Field, point) : GetVector(this->Field.Vectors, point);
   }
@@ -203,6 +221,372 @@ private:
   const FieldTransform Transform;
 };
 
+// The edges at rest, in output voxels, from the first vertex of each tetrahedron of a cell to its
+// other vertices, for all ways in which the split of a cell is mirrored.
+class CellEdges
+{
+public:
+  explicit CellEdges(const glm::dmat3& matrix)
+  {
+    for (int mirror = 0; mirror < 8; ++mirror)
+    {
+      for (std::size_t t = 0; t < 5; ++t)
+      {
+        Shape& shape = this->Shapes[static_cast<std::size_t>(mirror)][t];
+        const glm::dvec3 first = GetOffset(FiveTetrahedra[t][0] ^ mirror);
+        for (int k = 0; k < 3; ++k)
+        {
+          shape.Edges[k] = matrix * (GetOffset(FiveTetrahedra[t][k + 1] ^ mirror) - first);
+        }
+        shape.Inverse = 1.0 / glm::determinant(shape.Edges);
+      }
+    }
+  }
+
+  // Returns the deformed volume of a tetrahedron, divided by its volume at rest. displacements: of
+  // the vertices of the cell. NaN if one of them is NaN.
+  double GetRatio(int mirror, std::size_t t, const std::array<glm::dvec3, 8>& displacements) const
+  {
+    const Shape& shape = this->Shapes[static_cast<std::size_t>(mirror)][t];
+    const auto displacement = [&](int k) -> const glm::dvec3&
+    { return displacements[static_cast<std::size_t>(FiveTetrahedra[t][k] ^ mirror)]; };
+    const glm::dvec3& first = displacement(0);
+    const glm::dmat3 change(
+      displacement(1) - first, displacement(2) - first, displacement(3) - first);
+    return glm::determinant(shape.Edges + change) * shape.Inverse;
+  }
+
+private:
+  static glm::dvec3 GetOffset(int v)
+  {
+    return glm::dvec3(DEFORMVOLUME_OFFSET_X(v), DEFORMVOLUME_OFFSET_Y(v), DEFORMVOLUME_OFFSET_Z(v));
+  }
+
+  struct Shape
+  {
+    glm::dmat3 Edges;
+    double Inverse = 0.0; // of the determinant
+  };
+  std::array<std::array<Shape, 5>, 8> Shapes;
+};
+
+// Computes the volume ratios of the voxels in planes of constant z.
+//
+// Source describes the deformation. Displace(voxel, index): the displacement of a voxel, in output
+// voxels, or NaN if it has none. GetRatioOfCell(vertices): the ratio of a cell whose vertices all
+// follow one tetrahedron of a mesh, or else NaN. IsBridge(a, b): whether the deformation is split
+// between two voxels. GetOtherwise(voxel, index): the ratio of a voxel whose tetrahedra are all
+// hidden.
+template <typename Source>
+class PlaneRatios
+{
+public:
+  // crossed: numbers of hidden cells, in ascending order.
+  PlaneRatios(const Extent& voxels, const CellEdges& edges, const HiddenTetrahedra& hidden,
+    const std::vector<std::int64_t>& crossed, const Source& source)
+    : Voxels(voxels)
+    , Edges(edges)
+    , Hidden(hidden)
+    , Crossed(crossed)
+    , Deformation(source)
+  {
+    this->Displacements.fill(std::vector<glm::dvec3>(static_cast<std::size_t>(this->Plane)));
+    this->Volumes.fill(std::vector<Sums>(static_cast<std::size_t>(this->Plane)));
+  }
+
+  // Computes the planes from begin to before end, counted from the first plane of the volume.
+  void Compute(std::int64_t begin, std::int64_t end, float* ratios)
+  {
+    const std::int64_t first = std::max<std::int64_t>(begin - 1, 0);
+    this->DisplacePlane(first);
+    for (std::int64_t z = first; z < end; ++z)
+    {
+      if (z + 1 < GetSize(this->Voxels, 2))
+      {
+        this->DisplacePlane(z + 1);
+        this->AddLayer(z);
+      }
+      this->FinishPlane(z, z >= begin ? ratios : nullptr);
+    }
+  }
+
+private:
+  // Volumes of the tetrahedra around a voxel, in sixths of the volume of a voxel.
+  struct Sums
+  {
+    double Rest = 0.0;
+    double Deformed = 0.0;
+  };
+
+  // Calls body(point, index) for the points of a plane, or for the lower corners of the cells above
+  // it. point: number of the point in the plane.
+  template <typename Body>
+  void ForEach(std::int64_t z, bool cells, const Body& body) const
+  {
+    const int last = cells ? 1 : 0;
+    glm::ivec3 index(0, 0, this->Voxels[4] + static_cast<int>(z));
+    for (index.y = this->Voxels[2]; index.y <= this->Voxels[3] - last; ++index.y)
+    {
+      std::int64_t point = (index.y - this->Voxels[2]) * this->Width;
+      for (index.x = this->Voxels[0]; index.x <= this->Voxels[1] - last; ++index.x)
+      {
+        body(point++, index);
+      }
+    }
+  }
+
+  void DisplacePlane(std::int64_t z)
+  {
+    std::vector<glm::dvec3>& plane = this->Displacements[static_cast<std::size_t>(z % 2)];
+    this->ForEach(z, false,
+      [&](std::int64_t point, const glm::ivec3& index)
+      {
+        const std::int64_t voxel = z * this->Plane + point;
+        const bool isBlanked =
+          this->Hidden.Blanked && (this->Hidden.Blanked[voxel] & this->Hidden.BlankedBits) != 0;
+        plane[static_cast<std::size_t>(point)] =
+          isBlanked ? glm::dvec3(NotDefined) : this->Deformation.Displace(voxel, index);
+      });
+  }
+
+  // Adds the volumes of the cells between the planes z and z + 1.
+  void AddLayer(std::int64_t z)
+  {
+    std::int64_t cell = z * (this->Width - 1) * (GetSize(this->Voxels, 1) - 1);
+    auto next = std::lower_bound(this->Crossed.begin(), this->Crossed.end(), cell);
+    this->ForEach(z, true,
+      [&](std::int64_t point, const glm::ivec3& index)
+      {
+        int shown = this->Hidden.Active ? this->Hidden.Active[cell] : DEFORMVOLUME_ALL_TETRAHEDRA;
+        shown &= this->Hidden.Cut ? ~this->Hidden.Cut[cell] : shown;
+        if (next != this->Crossed.end() && *next == cell)
+        {
+          shown = 0;
+          ++next;
+        }
+        if (shown != 0)
+        {
+          this->AddCell(shown, z, point, index);
+        }
+        ++cell;
+      });
+  }
+
+  // shown: the shown tetrahedra, as bits. point: the lower corner of the cell.
+  void AddCell(int shown, std::int64_t z, std::int64_t point, const glm::ivec3& index)
+  {
+    std::array<std::int64_t, 8> vertices;
+    std::array<Sums*, 8> sums;
+    std::array<glm::dvec3, 8> displacements;
+    double sum = 0.0;
+    for (std::size_t v = 0; v < 8; ++v)
+    {
+      const std::int64_t ofPlane =
+        point + DEFORMVOLUME_OFFSET_X(v) + DEFORMVOLUME_OFFSET_Y(v) * this->Width;
+      const std::int64_t layer = z + DEFORMVOLUME_OFFSET_Z(v);
+      const auto parity = static_cast<std::size_t>(layer % 2);
+      vertices[v] = layer * this->Plane + ofPlane;
+      sums[v] = &this->Volumes[parity][static_cast<std::size_t>(ofPlane)];
+      displacements[v] = this->Displacements[parity][static_cast<std::size_t>(ofPlane)];
+      sum += displacements[v].x;
+    }
+    const double ofCell = std::isnan(sum) ? NotDefined : this->Deformation.GetRatioOfCell(vertices);
+    const int mirror = DEFORMVOLUME_MIRROR(index.x, index.y, index.z);
+    for (std::size_t t = 0; t < 5; ++t)
+    {
+      if ((shown >> t & 1) == 0)
+      {
+        continue;
+      }
+      std::array<std::size_t, 4> corners;
+      for (std::size_t k = 0; k < 4; ++k)
+      {
+        corners[k] = static_cast<std::size_t>(FiveTetrahedra[t][k] ^ mirror);
+      }
+      const double ratio =
+        std::isnan(ofCell) ? this->Edges.GetRatio(mirror, t, displacements) : ofCell;
+      if (!std::isnan(ratio) &&
+        !(this->Hidden.OpenSplits &&
+          this->IsBridge({ { vertices[corners[0]], vertices[corners[1]], vertices[corners[2]],
+            vertices[corners[3]] } })))
+      {
+        const double rest = t == 4 ? 2.0 : 1.0; // the central tetrahedron is twice as large
+        for (const std::size_t corner : corners)
+        {
+          sums[corner]->Rest += rest;
+          sums[corner]->Deformed += rest * ratio;
+        }
+      }
+    }
+  }
+
+  bool IsBridge(const std::array<std::int64_t, 4>& corners) const
+  {
+    for (std::size_t i = 1; i < 4; ++i)
+    {
+      for (std::size_t k = 0; k < i; ++k)
+      {
+        if (this->Deformation.IsBridge(corners[i], corners[k]))
+        {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  // Writes the ratios of a plane, unless ratios is null, and clears its sums.
+  void FinishPlane(std::int64_t z, float* ratios)
+  {
+    std::vector<Sums>& plane = this->Volumes[static_cast<std::size_t>(z % 2)];
+    this->ForEach(z, false,
+      [&](std::int64_t point, const glm::ivec3& index)
+      {
+        const Sums sums = std::exchange(plane[static_cast<std::size_t>(point)], Sums());
+        const std::int64_t voxel = z * this->Plane + point;
+        if (ratios)
+        {
+          ratios[voxel] =
+            static_cast<float>(sums.Rest > 0.0 ? sums.Deformed / sums.Rest
+                                               : this->Deformation.GetOtherwise(voxel, index));
+        }
+      });
+  }
+
+  const Extent& Voxels;
+  const std::int64_t Width = GetSize(Voxels, 0);
+  const std::int64_t Plane = Width * GetSize(Voxels, 1);
+  const CellEdges& Edges;
+  const HiddenTetrahedra& Hidden;
+  const std::vector<std::int64_t>& Crossed;
+  Source Deformation; // a copy, since it may keep what it has computed
+  // Two planes of voxels: those of even and of odd z.
+  std::array<std::vector<glm::dvec3>, 2> Displacements;
+  std::array<std::vector<Sums>, 2> Volumes;
+};
+
+template <typename Source>
+void ComputeRatios(const Extent& voxels, const glm::dmat3& atRest, const HiddenTetrahedra& hidden,
+  const std::vector<std::int64_t>& crossed, const Source& source, float* ratios)
+{
+  const CellEdges edges(atRest);
+  const std::int64_t planes = GetSize(voxels, 2);
+  constexpr std::int64_t planesOfPart = 8;
+  ParallelForItems((planes + planesOfPart - 1) / planesOfPart, 1,
+    [&](std::int64_t part)
+    {
+      const std::int64_t begin = part * planesOfPart;
+      PlaneRatios<Source>(voxels, edges, hidden, crossed, source)
+        .Compute(begin, std::min(begin + planesOfPart, planes), ratios);
+    });
+}
+
+// A deformation by a mesh, for PlaneRatios.
+struct MeshSource
+{
+  glm::dvec3 Displace(std::int64_t voxel, const glm::ivec3& index)
+  {
+    const std::int32_t owner = this->GetOwner(voxel);
+    if (owner < 0)
+    {
+      return this->Faded.IsEmpty()
+        ? glm::dvec3(NotDefined)
+        : this->Faded.Displace(
+            this->Links[static_cast<std::size_t>(voxel)], this->Tetrahedra, this->Displacements);
+    }
+    if (owner != this->Last)
+    {
+      const Tetrahedron& nodes = this->Tetrahedra[static_cast<std::size_t>(owner)];
+      this->Map.SetTetrahedron(nodes, this->RestPoints); // no voxel is linked to a flat one
+      this->End = GetVector(this->Displacements, nodes[3]);
+      for (std::size_t k = 0; k < 3; ++k)
+      {
+        this->Differences[static_cast<int>(k)] =
+          GetVector(this->Displacements, nodes[k]) - this->End;
+      }
+      this->Last = owner;
+    }
+    return this->End + this->Differences * this->Map.GetWeights(glm::dvec3(index));
+  }
+
+  double GetRatioOfCell(const std::array<std::int64_t, 8>& vertices) const
+  {
+    const std::int32_t owner = this->GetOwner(vertices[0]);
+    return owner >= 0 &&
+        std::all_of(vertices.begin(), vertices.end(),
+          [&](std::int64_t vertex) { return this->GetOwner(vertex) == owner; })
+      ? double{ this->Jacobians[vertices[0]] }
+      : NotDefined;
+  }
+
+  // Whether the tetrahedra of two voxels have coincident nodes, but none in common.
+  bool IsBridge(std::int64_t a, std::int64_t b) const
+  {
+    const std::int32_t owners[2] = { this->GetOwner(a), this->GetOwner(b) };
+    if (owners[0] < 0 || owners[1] < 0 || owners[0] == owners[1])
+    {
+      return false;
+    }
+    bool areCoincident = false;
+    for (const std::int32_t node : this->Tetrahedra[static_cast<std::size_t>(owners[0])])
+    {
+      for (const std::int32_t other : this->Tetrahedra[static_cast<std::size_t>(owners[1])])
+      {
+        if (node == other)
+        {
+          return false;
+        }
+        areCoincident = areCoincident ||
+          this->RestPoints[static_cast<std::size_t>(node)] ==
+            this->RestPoints[static_cast<std::size_t>(other)];
+      }
+    }
+    return areCoincident;
+  }
+
+  double GetOtherwise(std::int64_t voxel, const glm::ivec3&) const
+  {
+    return this->Jacobians[voxel];
+  }
+
+  std::int32_t GetOwner(std::int64_t voxel) const
+  {
+    return this->Owners[static_cast<std::size_t>(voxel)];
+  }
+
+  const std::vector<std::int32_t>& Owners;
+  const std::vector<VertexLink>& Links;
+  const FadedLinks& Faded;
+  const std::vector<glm::dvec3>& RestPoints;
+  const std::vector<Tetrahedron>& Tetrahedra;
+  const float* Displacements;
+  const float* Jacobians;
+  // The map of the last tetrahedron: neighboring voxels often have the same one.
+  std::int32_t Last = NoTetrahedron;
+  BarycentricMap Map{};
+  glm::dvec3 End{ 0.0 };
+  glm::dmat3 Differences{ 0.0 };
+};
+
+// A deformation by a field, for PlaneRatios.
+struct FieldSource
+{
+  glm::dvec3 Displace(std::int64_t, const glm::ivec3& index) const
+  {
+    return this->Field.DisplaceVoxel(glm::dvec3(index));
+  }
+  double GetRatioOfCell(const std::array<std::int64_t, 8>&) const { return NotDefined; }
+  bool IsBridge(std::int64_t, std::int64_t) const { return false; }
+  double GetOtherwise(std::int64_t, const glm::ivec3& index) const
+  {
+    return glm::determinant(this->AtRest + this->Field.GetDerivative(glm::dvec3(index))) /
+      glm::determinant(this->AtRest);
+  }
+
+  const DerivedField& Field;
+  const glm::dmat3& AtRest;
+};
+
 } // namespace
 
 void VoxelJacobians::SetMapping(const Extent& voxels, const glm::dvec3& spacing,
@@ -233,21 +617,28 @@ void VoxelJacobians::SetMapping(const Extent& voxels, const glm::dvec3& spacing,
         }
       });
   }
+  const auto mostTetrahedra = static_cast<std::int32_t>(tetrahedra.size());
+  std::vector<bool> areDiscarded(count);
+  std::transform(links.begin(), links.end(), areDiscarded.begin(),
+    [](const VertexLink& link) { return link.Tetrahedron < 0; });
   if (this->Faded.IsEmpty())
   {
     ExtrapolateLinks(voxels, spacing, restPoints, tetrahedra, links, [](double) {});
   }
   this->Owners.resize(count);
-  const auto mostTetrahedra = static_cast<std::int32_t>(tetrahedra.size());
   for (std::size_t i = 0; i < count; ++i)
   {
-    this->Owners[i] = links[i].Tetrahedron < mostTetrahedra ? links[i].Tetrahedron : -1;
+    const std::int32_t owner = links[i].Tetrahedron;
+    const bool isOfMesh = owner >= 0 && owner < mostTetrahedra;
+    this->Owners[i] = !isOfMesh ? NoTetrahedron : areDiscarded[i] ? ~owner : owner;
   }
   this->Links = this->Faded.IsEmpty() ? std::vector<VertexLink>() : std::move(links);
+  this->Crossed = mapping.Boundary.Crossed;
 }
 
 void VoxelJacobians::Compute(const OutputMap& toOutput, const std::vector<glm::dvec3>& restPoints,
-  const std::vector<Tetrahedron>& tetrahedra, const float* displacements, float* jacobians)
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
+  const HiddenTetrahedra& hidden, float* jacobians, float* ratios) const
 {
   const glm::dmat3 atRest = OutputTransform(toOutput).GetMatrix();
   const double volume = glm::determinant(atRest);
@@ -273,59 +664,36 @@ void VoxelJacobians::Compute(const OutputMap& toOutput, const std::vector<glm::d
     [&](std::size_t i)
     {
       const std::int32_t owner = this->Owners[i];
-      jacobians[i] = owner >= 0 ? ofTetrahedra[static_cast<std::size_t>(owner)] : 1.0F;
+      jacobians[i] = owner == NoTetrahedron
+        ? 1.0F
+        : ofTetrahedra[static_cast<std::size_t>(owner < 0 ? ~owner : owner)];
     });
-  if (!this->Faded.IsEmpty())
+  std::vector<float> ratiosOfKept;
+  if (!this->Faded.IsEmpty() && !ratios)
   {
-    this->ComputeOutside(toOutput, tetrahedra, displacements, jacobians);
+    ratiosOfKept.resize(this->Owners.size());
+    ratios = ratiosOfKept.data();
+  }
+  if (ratios)
+  {
+    ComputeRatios(this->Voxels, atRest, hidden, this->Crossed,
+      MeshSource{
+        this->Owners, this->Links, this->Faded, restPoints, tetrahedra, displacements, jacobians },
+      ratios);
+  }
+  for (std::size_t i = 0; i < this->Owners.size() && !this->Faded.IsEmpty(); ++i)
+  {
+    jacobians[i] = this->Owners[i] == NoTetrahedron ? ratios[i] : jacobians[i];
   }
 }
 
-void VoxelJacobians::ComputeOutside(const OutputMap& toOutput,
-  const std::vector<Tetrahedron>& tetrahedra, const float* displacements, float* jacobians) const
-{
-  const glm::dmat3 atRest = OutputTransform(toOutput).GetMatrix();
-  const double volume = glm::determinant(atRest);
-  const std::array<std::int64_t, 3> steps{ { 1, GetSize(this->Voxels, 0),
-    GetSize(this->Voxels, 0) * GetSize(this->Voxels, 1) } };
-  const auto displace = [&](std::int64_t voxel)
-  {
-    return this->Faded.Displace(
-      this->Links[static_cast<std::size_t>(voxel)], tetrahedra, displacements);
-  };
-  ForEachVoxel(this->Voxels,
-    [&](const glm::ivec3& index, std::int64_t voxel)
-    {
-      if (this->Owners[static_cast<std::size_t>(voxel)] >= 0)
-      {
-        return;
-      }
-      glm::dmat3 derivative = atRest;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-      {
-        const int at = index[static_cast<int>(axis)];
-        const std::int64_t low = at > this->Voxels[2 * axis] ? voxel - steps[axis] : voxel;
-        const std::int64_t high = at < this->Voxels[2 * axis + 1] ? voxel + steps[axis] : voxel;
-        const glm::dvec3 change = displace(high) - displace(low);
-        derivative[static_cast<int>(axis)] +=
-          change / static_cast<double>(std::max<std::int64_t>(1, (high - low) / steps[axis]));
-      }
-      jacobians[voxel] = static_cast<float>(glm::determinant(derivative) / volume);
-    });
-}
-
 void ComputeFieldJacobians(const VoxelGrid& voxelGrid, const DisplacementField& field,
-  const std::vector<unsigned char>& undefined, float* jacobians)
+  const std::vector<unsigned char>& undefined, const HiddenTetrahedra& hidden, float* jacobians)
 {
   const glm::dmat3 atRest = GetOutputTransform(voxelGrid).GetMatrix();
-  const double volume = glm::determinant(atRest);
   const DerivedField derived(field, true, undefined);
-  ForEachVoxel(voxelGrid.VertexExtent,
-    [&](const glm::ivec3& index, std::int64_t voxel)
-    {
-      jacobians[voxel] = static_cast<float>(
-        glm::determinant(atRest + derived.GetDerivative(glm::dvec3(index))) / volume);
-    });
+  ComputeRatios(
+    voxelGrid.VertexExtent, atRest, hidden, {}, FieldSource{ derived, atRest }, jacobians);
 }
 
 void ComputeInverseFieldJacobians(

@@ -54,7 +54,6 @@ void WorldDeformer::SetArrays(const std::vector<WorldArray>& arrays)
     }
   }
   this->Arrays = arrays;
-  this->DensityCopies.clear();
   ++this->ArraysVersion;
 }
 

@@ -174,7 +174,8 @@ private:
   {
     return (request.Jacobians || this->HasDensities()) && !this->IsInverse();
   }
-  /// Returns an array in the type in which it is resampled.
+  /// Returns an array as it is resampled. Densities are floating-point numbers and, unless the
+  /// field is an inverse one, divided by the volume ratios.
   VolumeArray GetSource(std::size_t array);
   /// Returns the arrays to resample: the arrays of the volume, and the additional arrays of the
   /// request.
@@ -191,7 +192,7 @@ private:
   DeformRequest MakeRequest(const WorldRequest& request, const Extent& whole, Resampling method);
   /// Completes additional arrays and densities after resampling.
   void Finish(const WorldRequest& request, const Extent& extent);
-  void DivideDensities(const WorldRequest& request, const float* jacobians, std::int64_t voxels);
+  void FinishDensities(const WorldRequest& request, const float* jacobians, std::int64_t voxels);
   void Describe(const WorldRequest& request, const Extent& whole, WorldReport& report);
 
   DeviceSession Session;
@@ -199,9 +200,7 @@ private:
   std::uint64_t MemoryLimit = 0;
   std::optional<ImageGeometry> Volume;
   std::vector<WorldArray> Arrays;
-  /// The values of densities of integers, as floats. Empty if there are none, or if they were not
-  /// made yet.
-  std::vector<std::vector<float>> DensityCopies;
+  std::vector<std::vector<unsigned char>> DensityCopies; // memory of GetSource()
   WorldMasks Masks;
   WorldMesh Mesh;
   VectorField Field;
@@ -231,6 +230,7 @@ private:
   VoxelJacobians MeshJacobians;
   std::uint64_t MeshJacobiansVersion = 0; // of the mapping
   std::vector<float> Jacobians;
+  std::vector<float> Ratios;           // by which densities are divided; for meshes
   std::vector<float> JacobiansOutput;  // if only densities need them
   std::int64_t NumberOfLostVoxels = 0; // of densities, in the last output
 

@@ -77,12 +77,16 @@ void WorldDeformer::UpdateRestPositions()
 void WorldDeformer::UpdateJacobians(const std::function<bool(double)>& progress)
 {
   this->Jacobians.resize(static_cast<std::size_t>(GetNumberOfPoints(this->Volume->PointExtent)));
+  const HiddenTetrahedra hidden{ this->Masks.Blanked, this->Masks.BlankedBits,
+    this->Masks.ActiveTetrahedra, this->Masks.CutTetrahedra };
   if (!this->IsMesh())
   {
     ComputeFieldJacobians(this->GetVoxelGrid(), this->Field.GetField(this->Outside),
-      this->Field.GetUndefinedPoints(), this->Jacobians.data());
+      this->Field.GetUndefinedPoints(), hidden, this->Jacobians.data());
     return;
   }
+  this->Ratios.resize(this->HasDensities() ? this->Jacobians.size() : 0);
+  float* const ratios = this->Ratios.empty() ? nullptr : this->Ratios.data();
   const MeshAtRest mesh = this->Mesh.GetMeshAtRest();
   const MappedVolume mapped = this->GetMapped();
   if (this->MeshJacobiansVersion != this->Mapping.GetVersion() ||
@@ -94,7 +98,7 @@ void WorldDeformer::UpdateJacobians(const std::function<bool(double)>& progress)
     this->MeshJacobiansVersion = this->Mapping.GetVersion();
   }
   this->MeshJacobians.Compute(this->ToOutput, mesh.Points, mesh.Tetrahedra,
-    this->Mesh.GetNodeDisplacements(), this->Jacobians.data());
+    this->Mesh.GetNodeDisplacements(), hidden, this->Jacobians.data(), ratios);
 }
 
 bool WorldDeformer::HasDensities() const
@@ -106,34 +110,42 @@ bool WorldDeformer::HasDensities() const
 VolumeArray WorldDeformer::GetSource(std::size_t array)
 {
   VolumeArray source = this->Arrays[array];
-  if (!this->Arrays[array].IsDensity || source.Type == ElementType::Float32 ||
-    source.Type == ElementType::Float64)
+  if (!this->Arrays[array].IsDensity)
   {
     return source;
   }
+  const std::int64_t voxels = GetNumberOfPoints(this->Volume->PointExtent);
   this->DensityCopies.resize(this->Arrays.size());
-  std::vector<float>& copy = this->DensityCopies[array];
-  if (copy.empty())
-  {
-    const auto values = static_cast<std::size_t>(GetNumberOfPoints(this->Volume->PointExtent)) *
-      static_cast<std::size_t>(source.Components);
-    copy.resize(values);
-    DispatchElementType(source.Type,
-      [&](auto zero)
+  std::vector<unsigned char>& copy = this->DensityCopies[array];
+  DispatchElementType(source.Type,
+    [&](auto zero)
+    {
+      using Source = decltype(zero);
+      using Value = std::conditional_t<std::is_same_v<Source, double>, double, float>;
+      const auto count = static_cast<std::size_t>(voxels * source.Components);
+      copy.resize(count * sizeof(Value));
+      auto* values = reinterpret_cast<Value*>(copy.data());
+      const auto* first = static_cast<const Source*>(source.Data);
+      std::transform(
+        first, first + count, values, [](Source value) { return static_cast<Value>(value); });
+      if (!this->IsInverse())
       {
-        const auto* first = static_cast<const decltype(zero)*>(source.Data);
-        std::transform(first, first + values, copy.begin(),
-          [](auto value) { return static_cast<float>(value); });
-      });
-  }
-  VolumeArray floats = MakeFloatArray(copy, source.Background);
-  floats.Components = source.Components;
-  return floats;
+        const std::vector<float>& divisors = this->IsMesh() ? this->Ratios : this->Jacobians;
+        DivideByJacobian(values, source.Components, divisors.data(), nullptr, voxels);
+      }
+      source.Type = std::is_same_v<Value, double> ? ElementType::Float64 : ElementType::Float32;
+    });
+  source.Data = copy.data();
+  return source;
 }
 
 std::vector<VolumeArray> WorldDeformer::MakeArrays(
   const WorldRequest& request, const std::function<bool(double)>& progress)
 {
+  if (this->ResamplesJacobians(request))
+  {
+    this->UpdateJacobians(progress);
+  }
   std::vector<VolumeArray> arrays;
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {
@@ -149,8 +161,10 @@ std::vector<VolumeArray> WorldDeformer::MakeArrays(
   }
   if (this->ResamplesJacobians(request))
   {
-    this->UpdateJacobians(progress);
     arrays.push_back(MakeFloatArray(this->Jacobians, request.Background));
+  }
+  if (this->ResamplesJacobians(request) || this->HasDensities())
+  {
     ++this->ArraysVersion; // the values have changed
   }
   for (VolumeArray& array : arrays)
@@ -344,7 +358,7 @@ void WorldDeformer::Finish(const WorldRequest& request, const Extent& extent)
   this->NumberOfLostVoxels = 0;
   if (hasDensities)
   {
-    this->DivideDensities(request, jacobians, static_cast<std::int64_t>(voxels));
+    this->FinishDensities(request, jacobians, static_cast<std::int64_t>(voxels));
     std::vector<float>().swap(this->JacobiansOutput);
   }
   for (std::size_t i = 0; i < voxels && request.FoldCounts; ++i)
@@ -354,25 +368,29 @@ void WorldDeformer::Finish(const WorldRequest& request, const Extent& extent)
   }
 }
 
-void WorldDeformer::DivideDensities(
+void WorldDeformer::FinishDensities(
   const WorldRequest& request, const float* jacobians, std::int64_t voxels)
 {
   for (std::size_t i = 0; i < this->Arrays.size(); ++i)
   {
     const WorldArray& array = this->Arrays[i];
-    const auto divide = [&](auto* values)
+    const auto finish = [&](auto* values)
     {
       using Value = std::remove_pointer_t<decltype(values)>;
-      this->NumberOfLostVoxels = DivideByJacobian(values, array.Components, jacobians,
-        request.Coverage, voxels, ClampTo<Value>(array.Background), values);
+      if (this->IsInverse())
+      {
+        DivideByJacobian(values, array.Components, jacobians, request.Coverage, voxels);
+      }
+      this->NumberOfLostVoxels = ClearInverted(values, array.Components, jacobians,
+        request.Coverage, voxels, ClampTo<Value>(array.Background));
     };
     if (array.IsDensity && array.Type == ElementType::Float64)
     {
-      divide(static_cast<double*>(request.Outputs[i]));
+      finish(static_cast<double*>(request.Outputs[i]));
     }
     else if (array.IsDensity)
     {
-      divide(static_cast<float*>(request.Outputs[i]));
+      finish(static_cast<float*>(request.Outputs[i]));
     }
   }
 }

@@ -9,13 +9,16 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include <vtkAppendFilter.h>
 #include <vtkCellData.h>
 #include <vtkShortArray.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace filterTesting;
@@ -315,6 +318,84 @@ TEST(ExtraArrays, Kept)
     for (int* index : { inside, far })
     {
       EXPECT_EQ(subject.Get("Jacobian")->GetComponent(output->ComputePointId(index), 0), 1.0);
+    }
+  }
+}
+
+// Layers of a mesh, four voxels thick, that are pressed to a twentieth between rigid layers:
+// densities keep their sum, although the Jacobian changes from voxel to voxel.
+TEST(ExtraArrays, CrushedLayers)
+{
+  const auto volume = MakeImage({ { 0, 32, 0, 4, 0, 4 } });
+  AddScalars<float>(volume, "dose", [](const glm::dvec3&) { return 2.0; });
+  AddScalars<double>(volume, "activity", [](const glm::dvec3& p) { return 5.0 + 0.1 * p.x; });
+  AddScalars<float>(volume, "linear", [](const glm::dvec3& p) { return p.y; });
+  for (const double offset : { 0.0, 0.5 })
+  {
+    const auto mesh =
+      MakeTetrahedra({ { -4.0 + offset, 36.0 + offset, -1.0, 5.0, -1.0, 5.0 } }, { { 11, 2, 2 } });
+    SetDisplacements(mesh,
+      [&](const glm::dvec3& p)
+      {
+        const auto layer = std::lround((p.x - offset + 4.0) / 4.0);
+        return glm::dvec3(0.2 * ((layer + 1) / 2) + 4.0 * (layer / 2), p.y, p.z);
+      });
+    Derived subject(volume, mesh);
+    subject.Filter->SetOutputSpacingModeToCustomSpacing();
+    subject.Filter->SetCustomSpacing(0.01, 1.0, 1.0);
+    vtkImageData* output = subject.Expect("");
+    // At rest the voxels at the two ends count by half.
+    for (const auto& [name, sum] :
+      { std::pair<const char*, double>("dose", 25 * 64.0), { "activity", 25 * 32 * 6.6 } })
+    {
+      EXPECT_LT(std::abs(Sum(output, name) / sum - 1.0), 0.005) << name << ", " << offset;
+    }
+  }
+}
+
+// Two sides of a cut or of a split mesh move apart without deformation: Jacobians and densities are
+// those at rest.
+TEST(ExtraArrays, BesideCuts)
+{
+  const auto move = [](const glm::dvec3& p)
+  { return p + glm::dvec3(p.x > 9.55 ? 3.0 : 0.0, 0.0, 0.0); };
+  const auto field = MakeImage({ { 0, 19, 0, 9, 0, 9 } });
+  SetDisplacements(field, move);
+  const auto right = MakeTetrahedra({ { 9.6, 30.0, -2.0, 12.0, -2.0, 12.0 } }, { { 2, 2, 2 } });
+  SetDisplacements(right, move);
+  const auto left = MakeTetrahedra({ { -10.0, 9.6, -2.0, 12.0, -2.0, 12.0 } }, { { 2, 2, 2 } });
+  SetDisplacements(left, [](const glm::dvec3& p) { return p; });
+  vtkNew<vtkAppendFilter> both;
+  both->AddInputData(left);
+  both->AddInputData(right);
+  both->Update();
+  const std::vector<vtkDataObject*> deformations{ field, right, both->GetOutput() };
+  for (vtkDataObject* deformation : deformations)
+  {
+    const auto volume = MakeImage({ { 0, 19, 0, 9, 0, 9 } });
+    AddScalars<float>(volume, "dose", [](const glm::dvec3&) { return 2.0; });
+    AddScalars<double>(volume, "activity", [](const glm::dvec3&) { return 5.0; });
+    AddScalars<float>(volume, "linear", [](const glm::dvec3& p) { return p.y; });
+    const auto active = AddActiveTetrahedra(volume);
+    const bool isSplit = deformation == both->GetOutput();
+    for (vtkIdType cell = 9; cell < active->GetNumberOfTuples() && !isSplit; cell += 19)
+    {
+      active->SetValue(cell, 0); // between x = 9 and x = 10
+    }
+    Derived subject(volume, deformation);
+    subject.Filter->SetOpenSplits(isSplit);
+    subject.Filter->SetOutsideMode(
+      deformation == right ? vtkDeformVolumeFilter::KEEP : vtkDeformVolumeFilter::DISCARD);
+    vtkImageData* output = subject.Update();
+    EXPECT_EQ(subject.Filter->GetNumberOfCoveredVoxels(), volume->GetNumberOfPoints());
+    for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
+    {
+      if (subject.IsCovered(id))
+      {
+        EXPECT_NEAR(subject.Get("Jacobian")->GetComponent(id, 0), 1.0, 1e-6);
+        EXPECT_NEAR(subject.Get("dose")->GetComponent(id, 0), 2.0, 1e-5);
+        EXPECT_NEAR(subject.Get("activity")->GetComponent(id, 0), 5.0, 1e-5);
+      }
     }
   }
 }
