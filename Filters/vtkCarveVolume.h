@@ -83,6 +83,7 @@ public:
    * Connect the closed surface (port 1).
    */
   void SetSurfaceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  /// Set the data object of port 1 itself, without a pipeline.
   void SetSurfaceData(vtkDataObject* data) { this->SetInputDataInternal(1, data); }
   ///@}
 
@@ -95,6 +96,7 @@ public:
    */
   vtkSetMacro(LabelArrayName, std::string);
   vtkGetMacro(LabelArrayName, std::string);
+  /// Set/Get the label of the voxels that are carved. Default: 1.
   vtkSetMacro(Label, double);
   vtkGetMacro(Label, double);
   ///@}

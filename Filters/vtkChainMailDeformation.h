@@ -92,6 +92,7 @@ public:
    * Connect the handles (port 1, optional).
    */
   void SetHandlesConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  /// Set the data object of port 1 itself, without a pipeline.
   void SetHandlesData(vtkDataObject* data) { this->SetInputDataObject(1, data); }
   ///@}
 
@@ -148,6 +149,7 @@ public:
    * used. Voxels with other values have the DefaultMaterial.
    */
   void AddMaterialRange(double minimum, double maximum, double index);
+  /// Remove all ranges.
   void ClearMaterialRanges();
   int GetNumberOfMaterialRanges();
   ///@}
@@ -203,7 +205,9 @@ public:
    * the current limits, all voxels are moved back to rest.
    */
   vtkIdType SaveState();
+  /// Restore a state before the next step. Returns false if there is no such state.
   bool RestoreState(vtkIdType state);
+  /// Remove a state. Returns false if there is no such state.
   bool RemoveState(vtkIdType state);
   int GetNumberOfStates();
   ///@}

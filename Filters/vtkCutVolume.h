@@ -66,6 +66,7 @@ public:
    * Connect the sheet (port 1).
    */
   void SetSheetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  /// Set the data object of port 1 itself, without a pipeline.
   void SetSheetData(vtkDataObject* data) { this->SetInputDataInternal(1, data); }
   ///@}
 

@@ -95,6 +95,7 @@ public:
    * Connect the deformation (port 1, optional): a tetrahedral mesh or a displacement field.
    */
   void SetDeformationConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  /// Set the data object of port 1 itself, without a pipeline.
   void SetDeformationData(vtkDataObject* data) { this->SetInputDataInternal(1, data); }
   ///@}
 
@@ -103,6 +104,7 @@ public:
    * Connect the rest configuration of the deformation mesh (port 2, optional).
    */
   void SetRestConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+  /// Set the data object of port 2 itself, without a pipeline.
   void SetRestData(vtkDataObject* data) { this->SetInputDataInternal(2, data); }
   ///@}
 

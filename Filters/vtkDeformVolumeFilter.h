@@ -98,10 +98,15 @@ public:
    * image (port 3). All are optional.
    */
   void SetDeformationConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  /// Set the data object of port 1 itself, without a pipeline.
   void SetDeformationData(vtkDataObject* data) { this->SetInputDataInternal(1, data); }
+  /// Connect the mesh at rest (port 2, optional).
   void SetRestConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+  /// Set the data object of port 2 itself, without a pipeline.
   void SetRestData(vtkDataObject* data) { this->SetInputDataInternal(2, data); }
+  /// Connect the reference image (port 3, optional).
   void SetReferenceConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(3, output); }
+  /// Set the data object of port 3 itself, without a pipeline.
   void SetReferenceData(vtkDataObject* data) { this->SetInputDataInternal(3, data); }
   ///@}
 
@@ -136,6 +141,16 @@ public:
   vtkBooleanMacro(FieldIsInverse, bool);
   ///@}
 
+  /**
+   * Bounds that determine the extent of the output, see SetOutputBoundsMode().
+   */
+  enum OutputBoundsModes
+  {
+    DEFORMED_BOUNDS = 0,
+    VOLUME_BOUNDS = 1,
+    CUSTOM_BOUNDS = 2
+  };
+
   ///@{
   /**
    * Set/Get which bounds determine the extent of the output: those of the deformed volume, those of
@@ -145,17 +160,12 @@ public:
    * have no effect, and a warning names those that are set. Defaults: DEFORMED_BOUNDS; -1, 1, -1,
    * 1, -1, 1.
    */
-  enum OutputBoundsModes
-  {
-    DEFORMED_BOUNDS = 0,
-    VOLUME_BOUNDS = 1,
-    CUSTOM_BOUNDS = 2
-  };
   vtkSetClampMacro(OutputBoundsMode, int, DEFORMED_BOUNDS, CUSTOM_BOUNDS);
   vtkGetMacro(OutputBoundsMode, int);
   void SetOutputBoundsModeToDeformedBounds() { this->SetOutputBoundsMode(DEFORMED_BOUNDS); }
   void SetOutputBoundsModeToVolumeBounds() { this->SetOutputBoundsMode(VOLUME_BOUNDS); }
   void SetOutputBoundsModeToCustomBounds() { this->SetOutputBoundsMode(CUSTOM_BOUNDS); }
+  /// Set/Get the box of CUSTOM_BOUNDS, in world coordinates. Default: -1, 1, -1, 1, -1, 1.
   vtkSetVector6Macro(CustomBounds, double);
   vtkGetVector6Macro(CustomBounds, double);
   ///@}
@@ -179,23 +189,38 @@ public:
   vtkGetMacro(BoundsGranularity, int);
   ///@}
 
-  ///@{
   /**
-   * Set/Get whether the output has the volume's spacing or CustomSpacing, which is in world units
-   * and greater than 0. Index 0 stays at the volume's origin. Defaults: VOLUME_SPACING; 1, 1, 1.
+   * Spacings of the output, see SetOutputSpacingMode().
    */
   enum OutputSpacingModes
   {
     VOLUME_SPACING = 0,
     CUSTOM_SPACING = 1
   };
+
+  ///@{
+  /**
+   * Set/Get whether the output has the volume's spacing or CustomSpacing, which is in world units
+   * and greater than 0. Index 0 stays at the volume's origin. Defaults: VOLUME_SPACING; 1, 1, 1.
+   */
   vtkSetClampMacro(OutputSpacingMode, int, VOLUME_SPACING, CUSTOM_SPACING);
   vtkGetMacro(OutputSpacingMode, int);
   void SetOutputSpacingModeToVolumeSpacing() { this->SetOutputSpacingMode(VOLUME_SPACING); }
   void SetOutputSpacingModeToCustomSpacing() { this->SetOutputSpacingMode(CUSTOM_SPACING); }
+  /// Set/Get the spacing of CUSTOM_SPACING, in world units, greater than 0. Default: 1, 1, 1.
   vtkSetVector3Macro(CustomSpacing, double);
   vtkGetVector3Macro(CustomSpacing, double);
   ///@}
+
+  /**
+   * What happens to the volume outside the deformation, see SetOutsideMode().
+   */
+  enum OutsideModes
+  {
+    DISCARD = 0,
+    EXTRAPOLATE = 1,
+    KEEP = 2
+  };
 
   ///@{
   /**
@@ -212,20 +237,26 @@ public:
    *
    * Defaults: DISCARD; 0.
    */
-  enum OutsideModes
-  {
-    DISCARD = 0,
-    EXTRAPOLATE = 1,
-    KEEP = 2
-  };
   vtkSetClampMacro(OutsideMode, int, DISCARD, KEEP);
   vtkGetMacro(OutsideMode, int);
   void SetOutsideModeToDiscard() { this->SetOutsideMode(DISCARD); }
   void SetOutsideModeToExtrapolate() { this->SetOutsideMode(EXTRAPOLATE); }
   void SetOutsideModeToKeep() { this->SetOutsideMode(KEEP); }
+  /// Set/Get the distance within which the displacement fades to zero with KEEP, in world units.
+  /// Default: 0.
   vtkSetMacro(FadeDistance, double);
   vtkGetMacro(FadeDistance, double);
   ///@}
+
+  /**
+   * Interpolations of arrays that are not categorical, see SetInterpolation().
+   */
+  enum Interpolations
+  {
+    LINEAR_INTERPOLATION = 0,
+    CUBIC_INTERPOLATION = 1,
+    NEAREST_INTERPOLATION = 2
+  };
 
   ///@{
   /**
@@ -235,12 +266,6 @@ public:
    * field or MESH_RASTERIZATION, voxels beyond the border are extrapolated linearly instead.
    * Integers are rounded to the nearest. Default: LINEAR_INTERPOLATION.
    */
-  enum Interpolations
-  {
-    LINEAR_INTERPOLATION = 0,
-    CUBIC_INTERPOLATION = 1,
-    NEAREST_INTERPOLATION = 2
-  };
   vtkSetClampMacro(Interpolation, int, LINEAR_INTERPOLATION, NEAREST_INTERPOLATION);
   vtkGetMacro(Interpolation, int);
   void SetInterpolationToLinearInterpolation() { this->SetInterpolation(LINEAR_INTERPOLATION); }
@@ -264,7 +289,9 @@ public:
    * does not have is a warning. Default: none.
    */
   void AddCategoricalArray(const char* name);
+  /// Remove one name.
   void RemoveCategoricalArray(const char* name);
+  /// Remove all names.
   void ClearCategoricalArrays();
   int GetNumberOfCategoricalArrays();
   const char* GetCategoricalArray(int index);
@@ -279,7 +306,9 @@ public:
    * is missing or categorical, and for meshes with MESH_RASTERIZATION. Default: none.
    */
   void AddDensityArray(const char* name);
+  /// Remove one name.
   void RemoveDensityArray(const char* name);
+  /// Remove all names.
   void ClearDensityArrays();
   int GetNumberOfDensityArrays();
   const char* GetDensityArray(int index);
@@ -348,6 +377,16 @@ public:
    */
   std::string GetSummary();
 
+  /**
+   * How the deformed volume is resampled, see SetResampler().
+   */
+  enum Resamplers
+  {
+    EXACT = 0,
+    MESH_RASTERIZATION = 2,
+    AUTOMATIC = 3
+  };
+
   ///@{
   /**
    * Set/Get how the deformed volume is resampled.
@@ -361,12 +400,6 @@ public:
    * The value 1 is an error. Default: AUTOMATIC. ResamplerInUse is the resampler of the last
    * execution; AUTOMATIC before the first.
    */
-  enum Resamplers
-  {
-    EXACT = 0,
-    MESH_RASTERIZATION = 2,
-    AUTOMATIC = 3
-  };
   void SetResampler(int resampler);
   int GetResamplerMinValue() { return EXACT; }
   int GetResamplerMaxValue() { return AUTOMATIC; }
@@ -436,6 +469,7 @@ public:
   vtkSetMacro(Device, std::string);
   vtkGetMacro(Device, std::string);
   vtkGetMacro(DeviceInUse, std::string);
+  /// Get the names of the devices of this machine, the best first. The array belongs to the caller.
   static VTK_NEWINSTANCE vtkStringArray* GetDeviceNames();
   ///@}
 
@@ -448,7 +482,9 @@ public:
    */
   vtkSetClampMacro(MemoryLimit, vtkTypeInt64, 0, VTK_TYPE_INT64_MAX);
   vtkGetMacro(MemoryLimit, vtkTypeInt64);
+  /// Get the bytes that this filter holds on the device.
   vtkTypeInt64 GetDeviceMemory();
+  /// Free what this filter holds on the device. The next update sends everything again.
   void ReleaseDeviceMemory();
   ///@}
 

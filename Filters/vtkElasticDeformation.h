@@ -121,6 +121,7 @@ public:
    * Connect the handles (port 1, optional).
    */
   void SetHandlesConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  /// Set the data object of port 1 itself, without a pipeline.
   void SetHandlesData(vtkDataObject* data) { this->SetInputDataObject(1, data); }
   ///@}
 
@@ -129,6 +130,7 @@ public:
    * Connect the sheet that cuts (port 2, optional).
    */
   void SetSheetConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+  /// Set the data object of port 2 itself, without a pipeline.
   void SetSheetData(vtkDataObject* data) { this->SetInputDataObject(2, data); }
   ///@}
 
@@ -148,6 +150,7 @@ public:
    * changed.
    */
   void UndoCut();
+  /// Remove all cuts before the next execution.
   void ClearCuts();
   ///@}
 

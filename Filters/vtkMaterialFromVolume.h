@@ -63,6 +63,7 @@ public:
    * Connect the volume (port 1).
    */
   void SetVolumeConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
+  /// Set the data object of port 1 itself, without a pipeline.
   void SetVolumeData(vtkDataObject* data) { this->SetInputDataObject(1, data); }
   ///@}
 
@@ -131,6 +132,7 @@ public:
    * used. Voxels with other values have the DefaultMaterial.
    */
   void AddMaterialRange(double minimum, double maximum, double index);
+  /// Remove all ranges.
   void ClearMaterialRanges();
   int GetNumberOfMaterialRanges();
   ///@}

@@ -137,6 +137,7 @@ public:
    * than 0.
    */
   void AddLabel(vtkTypeInt64 label);
+  /// Remove all labels.
   void ClearLabels();
   int GetNumberOfLabels();
   vtkTypeInt64 GetLabel(int index);
@@ -219,6 +220,7 @@ public:
    * all 0 for an index that is out of range.
    */
   void AddRefinementSphere(double x, double y, double z, double radius, double edgeLength);
+  /// Remove all spheres.
   void ClearRefinementSpheres();
   int GetNumberOfRefinementSpheres();
   void GetRefinementSphere(int index, double sphere[5]);

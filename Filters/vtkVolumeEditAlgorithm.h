@@ -73,8 +73,11 @@ public:
    * Connect the deformation (port 2) and its rest configuration (port 3).
    */
   void SetDeformationConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
+  /// Set the data object of port 2 itself, without a pipeline.
   void SetDeformationData(vtkDataObject* data) { this->SetInputDataInternal(2, data); }
+  /// Connect the mesh at rest (port 3, optional).
   void SetRestConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(3, output); }
+  /// Set the data object of port 3 itself, without a pipeline.
   void SetRestData(vtkDataObject* data) { this->SetInputDataInternal(3, data); }
   ///@}
 
@@ -96,6 +99,7 @@ public:
    * list again: positions that continue those of the last update continue its stroke.
    */
   void ClearToolPositions();
+  /// Remove the tool positions, for a list that is given again and may continue the last stroke.
   void ReplaceToolPositions();
   int GetNumberOfToolPositions();
   ///@}
@@ -106,6 +110,7 @@ public:
    * if there is none.
    */
   void Undo();
+  /// Redo the last edit that was undone.
   void Redo();
   ///@}
 

@@ -97,6 +97,7 @@ public:
    * UpdateDataEvent.
    */
   void StartSession();
+  /// Stop the thread of the session, after the end of a step, and destroy the timer.
   void StopSession();
   ///@}
 
@@ -135,6 +136,8 @@ public:
    */
   vtkSetClampMacro(CutDepth, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(CutDepth, double);
+  /// Set/Get the radius of the carving sphere, in world units; 0: a fortieth of the diagonal of the
+  /// output. Default 0.
   vtkSetClampMacro(CarveRadius, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(CarveRadius, double);
   ///@}
@@ -170,6 +173,7 @@ public:
    * Add/Clear the planes that are visible with SLICES: a point and a normal, in world coordinates.
    */
   void AddSlicePlane(double x, double y, double z, double nx, double ny, double nz);
+  /// Remove all planes.
   void ClearSlicePlanes();
   ///@}
 
@@ -210,6 +214,7 @@ public:
   vtkSetMacro(ShowHelp, bool);
   vtkGetMacro(ShowHelp, bool);
   vtkBooleanMacro(ShowHelp, bool);
+  /// Set/Get additional text below the list of keys. Default "".
   vtkSetMacro(AdditionalHelp, std::string);
   vtkGetMacro(AdditionalHelp, std::string);
   ///@}

@@ -134,9 +134,13 @@ public:
    * and keeps the handle at its position; Release() removes such a handle.
    */
   int BeginGrab(double x, double y, double z);
+  /// Move the handle with this number.
   void MoveGrab(int handle, double x, double y, double z);
+  /// End the grab, and remove the handle.
   void EndGrab(int handle);
+  /// End the grab, and keep the handle at its position.
   void HoldGrab(int handle);
+  /// Remove a handle that HoldGrab() has kept.
   void Release(int handle);
   ///@}
 
@@ -162,6 +166,7 @@ public:
    * action. With another radius than before, CarveTo() sweeps with the new one.
    */
   void CarveSphere(double x, double y, double z, double radius);
+  /// Continue the stroke: carve what the sphere sweeps from its last position.
   void CarveTo(double x, double y, double z, double radius);
   ///@}
 
@@ -171,7 +176,9 @@ public:
    * handles. Without an action, nothing else happens.
    */
   void Undo();
+  /// Redo the last action that was undone.
   void Redo();
+  /// Undo all actions.
   void Reset();
   ///@}
 
@@ -202,8 +209,11 @@ public:
    * - the memory for positions of voxels that ChainMail restores, in bytes (initially 1 GiB).
    */
   void ChangeHandleRadius(double radius);
+  /// Change the sweeps of relaxation in a step of ChainMail, 0 to 10000 (initially 5).
   void ChangeRelaxationSweeps(int sweeps);
+  /// Change the maximum number of nodes of the lattice on an axis, 2 to 100 (initially 7).
   void ChangeNumberOfNodes(int nodes);
+  /// Change the memory for positions that ChainMail restores, in bytes (initially 1 GiB).
   void ChangeUndoMemory(double bytes);
   ///@}
 
@@ -245,6 +255,7 @@ public:
    * none.
    */
   void AddCategoricalArray(const std::string& name);
+  /// Remove all names.
   void ClearCategoricalArrays();
   ///@}
 
@@ -261,6 +272,7 @@ public:
    * a step; pending events stay pending. The destructor calls Stop().
    */
   void Start();
+  /// Stop the thread of the session, after the end of a step. Pending events stay pending.
   void Stop();
   bool GetIsRunning();
   ///@}
@@ -306,6 +318,7 @@ public:
    * TakeOutput(), know the loaded session after the next Update() or step of the thread.
    */
   bool SaveSession(const std::string& fileName);
+  /// Replay the record of a file. Returns false after an error.
   bool LoadSession(const std::string& fileName);
   ///@}
 
@@ -315,6 +328,7 @@ public:
    * must end in .vti or .vtu, respectively. Both return false after an error.
    */
   bool SaveVolume(const std::string& fileName);
+  /// Write the deformed mesh of the model as .vtu. Returns false after an error.
   bool SaveMesh(const std::string& fileName);
   ///@}
 

@@ -201,6 +201,13 @@ def check_header(name):
     check(header.startswith("// SPDX-License-Identifier: "), f"{name}.h: the first line is not a license")
 
 
+def check_docstrings(cls):
+    """Setters and actions need a comment of their own: VTK's wrapper gives that of a group to its first member."""
+    for name, method in vars(cls).items():
+        if inspect.isroutine(method) and not re.match("_|Get|On[A-Z]|.*O(n|ff)$|Set.*To[A-Z]|SafeDown|NewInst", name):
+            check("\n\n" in method.__doc__.strip(), f"{cls.__name__}.{name}: help() has no text")
+
+
 def check_abstract(cls):
     try:
         cls()
@@ -221,6 +228,7 @@ def main():
     check(names == headers, f"The package has the classes {names}, but the folders {FOLDERS} have {headers}")
     for cls in classes:
         check_header(cls.__name__)
+        check_docstrings(cls)
         if is_abstract(cls):
             check_abstract(cls)
             continue
