@@ -22,7 +22,7 @@
  * exactly: if two neighboring bodies share a face, exactly one of them carves each tetrahedron
  * there.
  *
- * @par Port 0, the volume, ports 2 and 3, the deformation and its rest configuration, and output:
+ * @par Port 0, the volume, ports 2 and 3, the deformation and its mesh at rest, and output:
  * As in vtkVolumeEditAlgorithm. With a deformation, the function, the surface and the tool are in
  * the coordinates of the deformed volume. A label is carved whatever the deformation is.
  *

@@ -23,7 +23,7 @@
  * SweepVector is set. It may be open, fold and cross itself. A sheet that misses the volume cuts
  * nothing. If the sheet changes, the new cut replaces the old one, unless Accumulate is on.
  *
- * @par Port 0, the volume, ports 2 and 3, the deformation and its rest configuration, and output:
+ * @par Port 0, the volume, ports 2 and 3, the deformation and its mesh at rest, and output:
  * As in vtkVolumeEditAlgorithm. With a deformation, the sheet and the tool are in the coordinates
  * of the deformed volume. A cut is made if the sheet or the positions of the tool have changed.
  *

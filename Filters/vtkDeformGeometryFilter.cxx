@@ -117,7 +117,7 @@ void vtkDeformGeometryFilter::vtkInternals::CheckSettings(const deformvolume::Ra
 {
   deformvolume::RankSettings settings;
   settings.AddConnection(this->Self, 1, "deformation");
-  settings.AddConnection(this->Self, 2, "rest configuration");
+  settings.AddConnection(this->Self, 2, "mesh at rest");
   settings.Add("Inverse", this->Self->Inverse);
   settings.Add("DisplacementScale", this->Self->DisplacementScale);
   settings.Add("PointsAreDeformed", this->Self->PointsAreDeformed);

@@ -20,7 +20,7 @@
  * stands for the active vectors or else the only array of three components. Without a deformation
  * points do not move.
  *
- * @par Port 2, optional, the rest configuration:
+ * @par Port 2, optional, the mesh at rest:
  * A mesh, as on port 1, with the cells and the number of points of port 1.
  *
  * @par Output:
@@ -101,7 +101,7 @@ public:
 
   ///@{
   /**
-   * Connect the rest configuration of the deformation mesh (port 2, optional).
+   * Connect the mesh at rest (port 2, optional).
    */
   void SetRestConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
   /// Set the data object of port 2 itself, without a pipeline.

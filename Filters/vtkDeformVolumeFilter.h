@@ -42,7 +42,7 @@
  * active vectors. An empty name means the active vectors, or else the only array of three
  * components.
  *
- * @par Port 2, the rest configuration, optional:
+ * @par Port 2, the mesh at rest, optional:
  * A mesh with the cells and the number of points of port 1, whose points are then the deformed
  * positions.
  *
@@ -94,8 +94,8 @@ public:
 
   ///@{
   /**
-   * Connect the deformation (port 1), the rest configuration of its mesh (port 2) and the reference
-   * image (port 3). All are optional.
+   * Connect the deformation (port 1), its mesh at rest (port 2) and the reference image (port 3).
+   * All are optional.
    */
   void SetDeformationConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(1, output); }
   /// Set the data object of port 1 itself, without a pipeline.

@@ -254,7 +254,7 @@ void vtkElasticDeformation::Execute(
   {
     vtkWarningMacro(
       "The simulation starts again from rest, because the points, the cells or the unit of length "
-      "of the rest mesh have changed, or because a failed update lost the state of the body.");
+      "of the mesh at rest have changed, or because a failed update lost the state of the body.");
   }
   if (isFirst)
   {

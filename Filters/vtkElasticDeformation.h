@@ -8,7 +8,7 @@
  * vtkDeformVolumeFilter as the deformation (SetDeformationConnection()). Subclasses implement the
  * simulations. The simulated state is kept from one execution to the next.
  *
- * @par Port 0, the rest mesh:
+ * @par Port 0, the mesh at rest:
  * vtkUnstructuredGrid of vtkTetra cells, and with vtkFiniteElementDeformation of vtkQuadraticTetra
  * cells as well, all of the same orientation: with the fourth point on the same side of the first
  * three. Cells of fewer than three dimensions are ignored, and so are cells that vtkGhostType marks
@@ -67,9 +67,9 @@
  * time range from 0 to EndTime, unless the inputs have times.
  *
  * @par Changes:
- * If the points or cells of the rest mesh or LengthUnit change, the simulation restarts from rest,
- * with a warning. If materials, fixed or sliding nodes, forces or prescribed displacements change,
- * it continues.
+ * If the points or cells of the mesh at rest or LengthUnit change, the simulation restarts from
+ * rest, with a warning. If materials, fixed or sliding nodes, forces or prescribed displacements
+ * change, it continues.
  *
  * @par Abort:
  * An aborted execution ends within about 50 ms, with an empty output. The simulated state is kept.

@@ -23,7 +23,7 @@
  * deformation of the update that makes it. If only the deformation changes later, the edit keeps
  * its position in the tissue, and takes no time.
  *
- * @par Port 3, optional, the rest configuration of the deformation mesh:
+ * @par Port 3, optional, the mesh at rest:
  * As on port 2 of vtkDeformVolumeFilter.
  *
  * @par Output:
@@ -70,7 +70,7 @@ public:
 
   ///@{
   /**
-   * Connect the deformation (port 2) and its rest configuration (port 3).
+   * Connect the deformation (port 2) and its mesh at rest (port 3).
    */
   void SetDeformationConnection(vtkAlgorithmOutput* output) { this->SetInputConnection(2, output); }
   /// Set the data object of port 2 itself, without a pipeline.

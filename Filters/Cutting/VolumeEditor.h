@@ -44,7 +44,7 @@ public:
 
   /// The positions of the vertices of the volume: at rest, or, if the source has a Shape, deformed.
   /// The Volume of the source is set here. Throws Error. The filters that use this class have the
-  /// deformation on port 2 and the rest configuration on port 3.
+  /// deformation on port 2 and the mesh at rest on port 3.
   const VertexPositions& GetPositions(DeformationSource source, const OutsideVoxels& outside);
 
   /// Adds the edit `next` and sets `edit` to its number. The edit that had the number `edit` before

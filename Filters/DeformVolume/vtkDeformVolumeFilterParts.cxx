@@ -41,7 +41,7 @@ void vtkDeformVolumeFilter::vtkInternals::CheckSettings(const Ranks& ranks) cons
   // Device and MemoryLimit belong to a rank. Incremental and OutputOnDevice change no voxel.
   deformvolume::RankSettings settings;
   settings.AddConnection(this->Self, 1, "deformation");
-  settings.AddConnection(this->Self, 2, "rest configuration");
+  settings.AddConnection(this->Self, 2, "mesh at rest");
   settings.AddConnection(this->Self, ReferencePort, "reference image");
   settings.Add("DisplacementScale", this->Self->DisplacementScale);
   settings.Add("PointsAreDeformed", this->Self->PointsAreDeformed);

@@ -188,7 +188,7 @@ vtkDataArray* FindVectors(vtkDataSet* dataSet, const ArraySelector& selector,
   if (!array)
   {
     const char* const alternative = vtkUnstructuredGrid::SafeDownCast(dataSet)
-      ? ", or connect a rest configuration where the mesh is deformed already."
+      ? ", or connect the mesh at rest if this mesh is deformed already."
       : ".";
     std::string what = name;
     what.front() = static_cast<char>(std::toupper(what.front()));

@@ -25,7 +25,7 @@ namespace deformvolume
 
 /// Names of the meshes in messages.
 constexpr const char* MESH_NAME = "deformation mesh";
-constexpr const char* REST_NAME = "rest configuration";
+constexpr const char* REST_NAME = "mesh at rest";
 
 /// The grids that make up a mesh: one, or the leaves of a composite dataset. Node indices are
 /// counted over all grids, in order.

@@ -15,13 +15,13 @@ void CheckSource(const DeformationSource& source)
   {
     throw Error(std::string("PointsAreDeformed is on, but ") +
       (isField ? "the deformation is a displacement field, whose points are at rest"
-               : "there is a rest configuration, so that no displacements are read") +
-      ". Set PointsAreDeformed off" + (isField ? "." : ", or disconnect the rest configuration."));
+               : "there is a mesh at rest, so that no displacements are read") +
+      ". Set PointsAreDeformed off" + (isField ? "." : ", or disconnect the mesh at rest."));
   }
   if (isField && source.Rest)
   {
-    throw Error("There is a rest configuration, but the deformation is a displacement field, "
-                "which needs none. Disconnect the rest configuration.");
+    throw Error("There is a mesh at rest, but the deformation is a displacement field, "
+                "which needs none. Disconnect the mesh at rest.");
   }
   if (isField)
   {
@@ -37,8 +37,8 @@ void CheckSource(const DeformationSource& source)
   if (GetNumberOfNodes(shape) != GetNumberOfNodes(rest))
   {
     throw Error("The deformation mesh has " + std::to_string(GetNumberOfNodes(shape)) +
-      " points and the rest configuration has " + std::to_string(GetNumberOfNodes(rest)) +
-      ". Use two configurations of one mesh.");
+      " points and the mesh at rest has " + std::to_string(GetNumberOfNodes(rest)) +
+      ". Use one mesh, at rest and deformed.");
   }
 }
 

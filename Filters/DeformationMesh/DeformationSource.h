@@ -17,7 +17,7 @@ namespace deformvolume
 /// The input of a deformation, and the grids that it is converted to.
 struct DeformationSource
 {
-  /// The deformation and its rest configuration; Rest may be null.
+  /// The deformation and its mesh at rest; Rest may be null.
   vtkDataObject* Shape = nullptr;
   vtkDataObject* Rest = nullptr;
   /// The grids of Shape and Rest if they are meshes.

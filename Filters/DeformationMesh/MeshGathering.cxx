@@ -179,7 +179,7 @@ struct MeshGathering::Piece
   std::vector<Tetrahedron> Tetrahedra;
   DerivedNodes Derived;
   std::vector<glm::dvec3> RestPoints;
-  /// Deformed positions if there is a rest configuration, else displacements.
+  /// Deformed positions if there is a mesh at rest, else displacements.
   std::vector<glm::dvec3> Vectors;
   std::string IgnoredCells;
   std::string WrongOrder;
@@ -196,7 +196,8 @@ MeshGathering::Piece MeshGathering::Read(
   {
     throw Error("A rank has " + std::to_string(nodes) + " points of the deformation mesh and " +
       std::to_string(GetNumberOfNodes(rest)) +
-      " of the rest configuration. Use two configurations of one mesh, split alike.");
+      " of the mesh at rest. Use one mesh, at rest and deformed, divided into the same "
+      "pieces.");
   }
   if (nodes == 0)
   {
@@ -205,8 +206,8 @@ MeshGathering::Piece MeshGathering::Read(
   MeshCells cells = ReadCells(rest, rest, nullptr, places);
   if (source.Rest && ReadCells(shape, rest, nullptr, places).Tetrahedra != cells.Tetrahedra)
   {
-    throw Error("The cells of the deformation mesh are not those of the rest configuration. "
-                "Use two configurations of one mesh, split alike.");
+    throw Error("The cells of the deformation mesh are not those of the mesh at rest. "
+                "Use one mesh, at rest and deformed, divided into the same pieces.");
   }
   piece.Tetrahedra = std::move(cells.Tetrahedra);
   piece.Derived = std::move(cells.Derived);

@@ -46,7 +46,7 @@ private:
 
 struct DeformationSource;
 
-/// Finds the grids of a deformation and of its rest configuration.
+/// Finds the grids of a deformation and of its mesh at rest.
 struct DeformationGrids
 {
   MeshGrids Shape;

@@ -17,7 +17,7 @@ namespace deformvolume
 namespace
 {
 
-// Without a rest configuration, the points of the deformation mesh are at rest.
+// Without a mesh at rest, the points of the deformation mesh are at rest.
 bool IsRestMade(const DeformationSource& source)
 {
   return source.Rest ? source.RestIsMade : source.ShapeIsMade;
@@ -191,8 +191,8 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
     deformvolume::ReadCells(shape, rest, source.Derived).Tetrahedra !=
       (isSameRest ? this->Tetrahedra : reading.All))
   {
-    throw Error("The cells of the deformation mesh are not those of the rest configuration. Use "
-                "two configurations of one mesh.");
+    throw Error("The cells of the deformation mesh are not those of the mesh at rest. "
+                "Use one mesh, at rest and deformed.");
   }
   return reading;
 }

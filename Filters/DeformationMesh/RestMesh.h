@@ -33,8 +33,8 @@ class RestMesh
 {
 public:
   /// Reads the mesh. shape: the deformation mesh. rest: the grids with the positions at rest, which
-  /// are `shape` if there is no rest configuration. Throws an Error if they cannot be used, or are
-  /// not two configurations of one mesh.
+  /// are `shape` if there is no mesh at rest. Throws an Error if they cannot be used, or are
+  /// not one mesh, at rest and deformed.
   void Read(const MeshParts& shape, const MeshParts& rest, const DeformationSource& source);
 
   const std::vector<Tetrahedron>& GetTetrahedra() const { return this->Tetrahedra; }

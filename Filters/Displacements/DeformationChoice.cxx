@@ -99,9 +99,9 @@ void FillDeformationPort(vtkInformation* info)
 
 void ThrowRestWithoutDeformation(int restPort, int deformationPort)
 {
-  throw Error("There is a rest configuration on input port " + std::to_string(restPort) +
+  throw Error("There is a mesh at rest on input port " + std::to_string(restPort) +
     ", but no deformation on input port " + std::to_string(deformationPort) +
-    ". Connect the deformation, or disconnect the rest configuration.");
+    ". Connect the deformation, or disconnect the mesh at rest.");
 }
 
 } // namespace deformvolume

@@ -38,10 +38,10 @@ void CheckDisplacementScale(double scale);
 /// OutsideMode is KEEP and FadeDistance is negative or not finite.
 OutsideVoxels MakeOutsideVoxels(int outsideMode, double fadeDistance);
 
-/// Sets the data types of the ports for the deformation and for the rest configuration.
+/// Sets the data types of the ports for the deformation and for the mesh at rest.
 void FillDeformationPort(vtkInformation* info);
 
-/// Throws the Error of filters with a rest configuration but no deformation. The numbers are those
+/// Throws the Error of filters with a mesh at rest but no deformation. The numbers are those
 /// of the input ports.
 [[noreturn]] void ThrowRestWithoutDeformation(int restPort, int deformationPort);
 

@@ -39,7 +39,7 @@ namespace deformvolume
 namespace
 {
 
-constexpr const char* MESH = "rest mesh on input port 0";
+constexpr const char* MESH = "mesh at rest on input port 0";
 
 vtkDataArray* FindMeshArray(
   vtkDataSetAttributes* attributes, const char* name, int components, vtkIdType tuples)
@@ -124,7 +124,7 @@ struct CountedNodes
     this->First = this->Number == 0 ? node : this->First;
     ++this->Number;
   }
-  // Throws an Error such as "3 nodes of the rest mesh slide, the first one being number 7. ".
+  // Throws an Error such as "3 nodes of the mesh at rest slide, the first one being number 7. ".
   void ThrowIfAny(const std::string& what, const std::string& advice) const
   {
     if (this->Number > 0)

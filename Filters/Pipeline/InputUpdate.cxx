@@ -74,8 +74,8 @@ void Request(vtkInformation* input, vtkInformation* request, const Ranks& ranks)
 vtkDataObject* Update(vtkAlgorithm* filter, int port, vtkInformation* request, const Ranks& ranks)
 {
   const bool isVolume = vtkImageData::SafeDownCast(filter->GetInputDataObject(0, 0)) != nullptr;
-  const char* const names[4] = { isVolume ? "volume" : "points", "deformation",
-    "rest configuration", "reference image" };
+  const char* const names[4] = { isVolume ? "volume" : "points", "deformation", "mesh at rest",
+    "reference image" };
   vtkAlgorithmOutput* source = filter->GetInputConnection(port, 0);
   vtkNew<vtkInformationVector> requests;
   requests->SetNumberOfInformationObjects(source->GetIndex() + 1);

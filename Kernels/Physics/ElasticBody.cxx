@@ -60,12 +60,12 @@ struct FaultCounter
     this->First = this->Number == 0 ? number : this->First;
     ++this->Number;
   }
-  // Such as "3 of 20 tetrahedra of the rest mesh are flat, the first one with the points 3, 4, 5
+  // Such as "3 of 20 tetrahedra of the mesh at rest are flat, the first one with the points 3, 4, 5
   // and 9. ".
   void Throw(const ElasticBody& body, const std::string& what, const std::string& advice) const
   {
     throw Error(std::to_string(this->Number) + " of " + std::to_string(body.Tetrahedra.size()) +
-      " tetrahedra of the rest mesh " + what + ", the first one with the points " +
+      " tetrahedra of the mesh at rest " + what + ", the first one with the points " +
       ListNodes(body.Tetrahedra[this->First]) + ". " + advice);
   }
 };
@@ -280,7 +280,7 @@ void CheckBody(const ElasticBody& body, AbortCheck* abortCheck)
   AbortCheck& given = abortCheck ? *abortCheck : none;
   if (body.Tetrahedra.empty())
   {
-    throw Error("The rest mesh has no tetrahedra, or all of them are hidden.");
+    throw Error("The mesh at rest has no tetrahedra, or all of them are hidden.");
   }
   if (!body.Fixed.empty())
   {

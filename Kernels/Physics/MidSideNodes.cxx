@@ -70,7 +70,7 @@ std::vector<Edge> FindEdges(const ElasticBody& body)
   }
   if (withTwo > 0)
   {
-    throw Error("The rest mesh has " + std::to_string(withTwo) +
+    throw Error("The mesh at rest has " + std::to_string(withTwo) +
       (withTwo == 1 ? " edge" : " edges") +
       " with more than one mid-side node. The first is between the nodes " +
       std::to_string(first >> 32) + " and " + std::to_string(first & 0xffffffffu) +

@@ -190,7 +190,7 @@ std::string DescribeMissedVolume(const MeshAtRest& mesh, const ImageGeometry& vo
   const IndexBounds box = FindBox(mesh, volume.GetIndexToWorld());
   return "The deformation mesh at rest holds no voxel of the volume. " +
     Describe("mesh", box, volume) +
-    " Check also that the deformation mesh or, where one is given, the rest configuration is "
+    " Check also that the deformation mesh or, where one is given, the mesh at rest is "
     "at rest.";
 }
 

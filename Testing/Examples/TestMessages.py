@@ -215,10 +215,10 @@ def check_fields():
 def check_meshes():
     fewer = make_unstructured(places[:-5], moves[:-5], make_tetrahedra()[:20])
     write_mesh("fewer.vtu", fewer)
-    fails(1, [path("mesh.vtu"), "mesh has 60 points", "rest configuration has 55"],
+    fails(1, [path("mesh.vtu"), "mesh has 60 points", "mesh at rest has 55"],
           "--mesh", path("mesh.vtu"), "--rest", path("fewer.vtu"))
     write_mesh("other.vtu", make_unstructured(places, moves, make_tetrahedra()[:20]))
-    fails(1, "not those of the rest", "--mesh", path("mesh.vtu"), "--rest", path("other.vtu"))
+    fails(1, "not those of the mesh at rest", "--mesh", path("mesh.vtu"), "--rest", path("other.vtu"))
     for name, value, expected in (("nan", float("nan"), "not finite"), ("far", 1e9, "16,383")):
         wrong = moves.copy()
         wrong[30] = value

@@ -131,7 +131,7 @@ def check_sofa(expected):
     left = cells[:-1]
     left[3] = cells[-1]
     write_sofa(path("less1.vtu"), places + moves, find_edges(cells) + left, [("rest_position", places)], edges=False)
-    fails("cells of the deformation mesh are not those of the rest", *mesh("less1.vtu"), "--rest", path("body0.vtu"))
+    fails("cells of the deformation mesh are not those of the mesh at rest", *mesh("less1.vtu"), "--rest", path("body0.vtu"))
     write_sofa(path("less0.vtu"), places, left, edges=False)
     values, covered = deform(*mesh("less1.vtu"), "--rest", path("less0.vtu"))
     both = (covered != 0) & (expected[1] != 0)
@@ -147,7 +147,7 @@ def check_sofa(expected):
     number = 30
     others = [[node - (node > number) for node in cell] for cell in cells if number not in cell]
     write_sofa(path("fewer1.vtu"), numpy.delete(places + moves, number, axis=0), others)
-    fails(["has 59 points", "rest configuration has 60"], *mesh("fewer1.vtu"), "--rest", path("body0.vtu"))
+    fails(["has 59 points", "mesh at rest has 60"], *mesh("fewer1.vtu"), "--rest", path("body0.vtu"))
 
 
 def check_units():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests the graphical client in an X server of its own: it loads the plugin and a state, shows the volume as pvpython
-does, and reports one error for a filter with a rest mesh but without a deformation."""
+does, and reports one error for a filter with a mesh at rest but without a deformation."""
 
 import os
 import re

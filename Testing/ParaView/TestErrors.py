@@ -69,7 +69,7 @@ def main():
     filter_.DisplacementArray = ["POINTS", "Displacement"]
     check_works(filter_)
 
-    # A rest mesh with another number of points.
+    # A mesh at rest with another number of points.
     other = bent_lattice(volume, nodes=5)
     filter_.RestMesh = other
     check_one_message(update(filter_), ["points"])

@@ -154,7 +154,7 @@ vtkSmartPointer<vtkUnstructuredGrid> Move(vtkUnstructuredGrid* mesh)
 void TestSpread(const Case& from, vtkImageData* whole)
 {
   auto* mesh = vtkUnstructuredGrid::SafeDownCast(from.Deformation);
-  // With a rest configuration instead of displacements.
+  // With a mesh at rest instead of displacements.
   const auto moved = Move(mesh);
   Case two = from;
   two.Name += ", two meshes";
@@ -349,7 +349,7 @@ void TestSettings(const Case& from, vtkImageData* whole)
     [](Filter* filter) { filter->SetDeformationData(nullptr); },
     [&](Filter* filter) { filter->SetDeformationData(from.Deformation); });
   test(
-    "rest configuration on input port 2 is connected on some ranks only",
+    "mesh at rest on input port 2 is connected on some ranks only",
     [&](Filter* filter) { filter->SetRestData(from.Deformation); },
     [](Filter* filter) { filter->SetRestData(nullptr); });
   test(

@@ -133,10 +133,10 @@ void TestFailures()
   {
     Pipeline pipeline(from);
     pipeline.Filter->SetRestConnection(pipeline.Rest->GetOutputPort());
-    TestFailure(pipeline, pipeline.Rest.Get(), "rest configuration on input port 2");
+    TestFailure(pipeline, pipeline.Rest.Get(), "mesh at rest on input port 2");
     // With these bounds, the filter does not need the mesh before RequestData().
     pipeline.Filter->SetOutputBoundsModeToVolumeBounds();
-    TestFailure(pipeline, pipeline.Rest.Get(), "rest configuration on input port 2");
+    TestFailure(pipeline, pipeline.Rest.Get(), "mesh at rest on input port 2");
     TestFailure(pipeline, pipeline.Volume.Get(), "volume on input port 0");
   }
 }

@@ -138,7 +138,7 @@ def test_chosen_time():
     deform.Update()
     deform.UpdateTimeStep(3.0)
     assert deform.GetOutput().GetExtent()[1] == 19, deform.GetOutput().GetExtent()
-    # The deformed mesh and the rest mesh are at different times.
+    # The deformed mesh and the mesh at rest are at different times.
     moved = Series("vtkUnstructuredGrid", warp_lattice)
     rest = Series("vtkUnstructuredGrid", warp_lattice)
     moved.UpdateTimeStep(2.0)

@@ -63,7 +63,7 @@ public:
   ~BenchmarkCase();
 
   /// Replaces the displacements by deformed positions, and another grid with equal cells for the
-  /// rest configuration.
+  /// mesh at rest.
   void ConnectRest();
 
   /// Moves the nodes to the next step of a pose. This is not measured.

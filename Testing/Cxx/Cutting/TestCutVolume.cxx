@@ -89,9 +89,9 @@ TEST(CutVolume, Misuse)
   SetDisplacements(mesh, Shift(0, 0, 0));
   mesh->Modified();
   cut.Filter->SetRestData(MakeMesh(volume, 4));
-  cut.Fails("the rest configuration has");
+  cut.Fails("the mesh at rest has");
   cut.Filter->SetDeformationData(nullptr);
-  cut.Fails("a rest configuration on input port 3, but no deformation on input port 2");
+  cut.Fails("a mesh at rest on input port 3, but no deformation on input port 2");
   cut.Filter->SetRestData(nullptr);
   cut.Filter->SetSheetData(MakePlaneX(volume, 4.5));
   EXPECT_EQ(cut.CountOff(), 320);

@@ -788,7 +788,7 @@ TEST(DeformMeshes, DeformedPoints)
   EXPECT_EQ(gone[0], gone[1]);
   found.Filter->SetDeformationData(moved);
   found.Filter->SetRestData(mesh);
-  found.VerifyFailure("PointsAreDeformed is on, but there is a rest configuration");
+  found.VerifyFailure("PointsAreDeformed is on, but there is a mesh at rest");
   found.Filter->SetRestData(nullptr);
   found.Update();
   const auto field = MakeImage({ { -1, 10, -1, 10, -1, 10 } });

@@ -272,7 +272,7 @@ TEST(DeformGeometryFilter, Misuse)
   misuse.Expect("no deformation on input port 1");
 
   filter->SetRestData(MakeLattice(10.0, 4, 0.0));
-  misuse.Expect("27 points and the rest configuration has 64");
+  misuse.Expect("27 points and the mesh at rest has 64");
 
   filter->SetDisplacementScale(nan);
   misuse.Expect("DisplacementScale is not finite");

@@ -90,7 +90,7 @@ TYPED_TEST(ElasticModels, Misuse)
     mesh->InsertNextCell(VTK_TETRA, 4, corners);
   };
   EXPECT_TRUE(HasPart(tryMesh(repeatCell),
-    "1 of 961 tetrahedra of the rest mesh have the same corners as another one"));
+    "1 of 961 tetrahedra of the mesh at rest have the same corners as another one"));
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, bar);
   simulated.Filter->SetInputDataObject(blocks);
@@ -229,7 +229,7 @@ TEST(ElasticDeformation, ErrorsOfSubclasses)
   AddPointVectors(bar, "PrescribedDisplacement",
     [](const glm::dvec3& p) { return glm::dvec3(0.0, 0.0, p.x == 0.0 && p.z == 0.0); });
   EXPECT_TRUE(
-    HasPart(springs.TryUpdate(), "5 nodes of the rest mesh on input port 0 are fixed and have"));
+    HasPart(springs.TryUpdate(), "5 nodes of the mesh at rest on input port 0 are fixed and have"));
   bar->GetPointData()->RemoveArray("PrescribedDisplacement");
   bar->GetPointData()->GetArray("Fixed")->SetTuple1(325, 0.0);
   AddPointVectors(bar, "SlidingNormal", [](const glm::dvec3& p) { return glm::dvec3(p.z > 0.03); });
@@ -237,7 +237,7 @@ TEST(ElasticDeformation, ErrorsOfSubclasses)
   AddPointVectors(
     bar, "SlidingNormal", [](const glm::dvec3& p) { return glm::dvec3(p.z == 0.03, 0.0, 0.0); });
   EXPECT_TRUE(
-    HasPart(springs.TryUpdate(), "25 nodes of the rest mesh on input port 0 have a sliding"));
+    HasPart(springs.TryUpdate(), "25 nodes of the mesh at rest on input port 0 have a sliding"));
   bar->GetPointData()->RemoveArray("SlidingNormal");
   EXPECT_EQ(springs.TryUpdate(), "");
 

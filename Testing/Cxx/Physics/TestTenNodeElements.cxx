@@ -108,7 +108,7 @@ TEST(TenNodeElements, MisplacedNodes)
   cube->GetPoints()->SetPoint(first[4], &moved.x);
   EXPECT_TRUE(HasPart(TryMesh(cube),
     std::to_string(CountUsers(cube, first[4])) +
-      " of 40 tetrahedra of the rest mesh overlap themselves"));
+      " of 40 tetrahedra of the mesh at rest overlap themselves"));
   // A node that is not exactly in the middle is valid.
   const glm::dvec3 curved = 0.45 * GetPoint(cube, first[0]) + 0.55 * GetPoint(cube, first[1]);
   cube->GetPoints()->SetPoint(first[4], &curved.x);
@@ -141,16 +141,18 @@ TEST(TenNodeElements, WrongCells)
   const vtkIdType second = cube->GetPoints()->InsertNextPoint(&middle.x);
   cube->GetPointData()->GetArray("Fixed")->InsertNextTuple1(0.0);
   ReplaceCells(cube, changeFirst(shared, second));
-  EXPECT_TRUE(HasPart(TryMesh(cube), "The rest mesh has 1 edge with more than one mid-side node"));
+  EXPECT_TRUE(
+    HasPart(TryMesh(cube), "The mesh at rest has 1 edge with more than one mid-side node"));
   // A mid-side node that is a corner of the mesh.
   cube = MakeTenNodeCube();
   ReplaceCells(cube, changeFirst(4, GetIds(cube, 0)[2]));
-  EXPECT_TRUE(HasPart(TryMesh(cube), "1 nodes of the rest mesh on input port 0 are in the middle"));
+  EXPECT_TRUE(
+    HasPart(TryMesh(cube), "1 nodes of the mesh at rest on input port 0 are in the middle"));
   // A cell with nine points, and a cell with the id of a point that does not exist.
   cube = MakeTenNodeCube();
   ReplaceCells(
     cube, [](vtkIdType cell, std::vector<vtkIdType>& ids) { ids.resize(cell == 3 ? 9 : 10); });
-  EXPECT_TRUE(HasPart(TryMesh(cube), "Cell 3 of the rest mesh on input port 0 has 9 points"));
+  EXPECT_TRUE(HasPart(TryMesh(cube), "Cell 3 of the mesh at rest on input port 0 has 9 points"));
   cube = MakeTenNodeCube();
   ReplaceCells(cube, changeFirst(7, cube->GetNumberOfPoints()));
   const std::string size = std::to_string(cube->GetNumberOfPoints());
@@ -180,7 +182,7 @@ TEST(TenNodeElements, WrongConditions)
       cube = make();
       AddPointVectors(cube, name, [](const glm::dvec3&) { return glm::dvec3(0.0); })
         ->SetComponent(8, 1, nan);
-      EXPECT_TRUE(HasPart(TryMesh(cube), std::string(name) + " 8 of the rest mesh"));
+      EXPECT_TRUE(HasPart(TryMesh(cube), std::string(name) + " 8 of the mesh at rest"));
       cube = make();
       AddPointVectors(cube, name, [](const glm::dvec3&) { return glm::dvec3(0.0); })
         ->SetNumberOfTuples(5);

@@ -282,11 +282,11 @@ TEST_F(DeformMisuse, RestMeshes)
 {
   vtkNew<vtkUnstructuredGrid> empty;
   this->GetFilter()->SetRestData(empty);
-  this->Expect("an empty rest mesh", "no points");
+  this->Expect("an empty mesh at rest", "no points");
 
   auto other = MakeMesh(this->Volume, 4);
   this->GetFilter()->SetRestData(other);
-  this->Expect("a rest mesh with other points", "points");
+  this->Expect("a mesh at rest with other points", "points");
 
   auto fewer = this->CopyMesh();
   vtkNew<vtkCellArray> cells;
@@ -296,13 +296,13 @@ TEST_F(DeformMisuse, RestMeshes)
   }
   fewer->SetCells(VTK_TETRA, cells);
   this->GetFilter()->SetRestData(fewer);
-  this->Expect("a rest mesh with other cells", "cells");
+  this->Expect("a mesh at rest with other cells", "cells");
 
   auto field = MakeImage({ { -1, 10, -1, 10, -1, 10 } });
   SetDisplacements(field, Shift(0.0, 0.0, 0.0));
   this->GetFilter()->SetDeformationData(field);
   this->GetFilter()->SetRestData(this->CopyMesh());
-  this->Expect("a rest mesh with a displacement field", "Disconnect the rest configuration");
+  this->Expect("a mesh at rest with a displacement field", "Disconnect the mesh at rest");
 }
 
 TEST_F(DeformMisuse, Settings)

@@ -124,8 +124,8 @@ TEST(DeformTime, NoTimes)
     deformed.Filter->GetOutput()->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()));
 }
 
-// The rest mesh is another time of the source that gives the deformation. Of a source of two inputs
-// VTK requests the time of the last input only.
+// The mesh at rest is another time of the source that gives the deformation. Of a source of two
+// inputs VTK requests the time of the last input only.
 TEST(DeformTime, RestFromSameSource)
 {
   TimedDeformation deformed([](double) { return 0.0; });

@@ -85,7 +85,7 @@ TEST(FiniteElements, Misuse)
   EXPECT_EQ(GetError([&] { model.Solve({}); }), "There is no body. Call SetBody first.");
   EXPECT_EQ(GetError([&] { model.Reset(); }), "There is no body. Call SetBody first.");
   EXPECT_EQ(GetError([&] { model.SetBody({}); }),
-    "The rest mesh has no tetrahedra, or all of them are hidden.");
+    "The mesh at rest has no tetrahedra, or all of them are hidden.");
   EXPECT_EQ(GetError(
               [&] {
                 model.SetBody(MakeLinearBlock({ 3, 3, 3 }).Body);

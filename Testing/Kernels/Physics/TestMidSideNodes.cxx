@@ -181,14 +181,14 @@ TEST(MidSideNodes, Misuse)
   const auto a = static_cast<std::size_t>(body.MidSides[3][0]);
   body.Points[a] +=
     0.6 * (body.Points[static_cast<std::size_t>(body.Tetrahedra[3][0])] - body.Points[a]);
-  expectFound(getError(body), " of 40 tetrahedra of the rest mesh overlap themselves");
+  expectFound(getError(body), " of 40 tetrahedra of the mesh at rest overlap themselves");
   body = lattice.Body;
   for (MidSideNodes& nodes : body.MidSides)
   {
     std::swap(nodes[4], nodes[5]);
   }
   expectFound(getError(body),
-    "40 of 40 tetrahedra of the rest mesh overlap themselves, as mid-side "
+    "40 of 40 tetrahedra of the mesh at rest overlap themselves, as mid-side "
     "nodes are misplaced, the first one with the points " +
       ListNodes(body.Tetrahedra[0]) + ".");
   body = lattice.Body;
@@ -211,7 +211,7 @@ TEST(MidSideNodes, Misuse)
     body.Tetrahedra[t][3] = static_cast<std::int32_t>(body.Points.size() - 1);
   }
   expectFound(getError(body),
-    "2 of 40 tetrahedra of the rest mesh are flat, the first one with the points " +
+    "2 of 40 tetrahedra of the mesh at rest are flat, the first one with the points " +
       ListNodes(body.Tetrahedra[4]) + ".");
   EXPECT_EQ(ListNodes({ { 3, 14, 5, 9 } }), "3, 14, 5 and 9");
 }
@@ -232,7 +232,8 @@ TEST(MidSideNodes, InvertedPartsAreAnError)
     node = middle + 0.8 * aside;
     EXPECT_EQ(GetError([&] { CheckBody(body); }), "");
     node = middle + aside;
-    EXPECT_NE(GetError([&] { CheckBody(body); }).find("1 of 1 tetrahedra of the rest mesh overlap"),
+    EXPECT_NE(
+      GetError([&] { CheckBody(body); }).find("1 of 1 tetrahedra of the mesh at rest overlap"),
       std::string::npos);
   }
 }
