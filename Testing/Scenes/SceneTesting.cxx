@@ -59,12 +59,15 @@ bool Test(const Scene& scene, const std::string& baselines, const std::string& o
               << ": the difference from the baseline is " << comparison.Difference << ", must be "
               << (version == Version::INTACT ? "at most " : "at least ")
               << (version == Version::INTACT ? 1.0 : 2.0) * scene.Limit << "\n";
+    const std::string file = output + '/' + scene.Name + name;
+    if (version == Version::INTACT || !isRight)
+    {
+      Write(picture, file + ".png");
+      std::cout << "  the picture: " << file << ".png\n";
+    }
     if (!isRight)
     {
       passes = false;
-      const std::string file = output + '/' + scene.Name + name;
-      Write(picture, file + ".png");
-      std::cout << "  the picture: " << file << ".png\n";
       if (comparison.Image)
       {
         Write(comparison.Image, file + ".difference.png");
