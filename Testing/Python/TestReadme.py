@@ -135,6 +135,12 @@ assert abs(displacements[top][0] - 3) < 1e-6, displacements[top]
 covered = names["deform"].GetNumberOfCoveredVoxels()
 assert 8000 < covered < 9000, covered  # of 9261: the body moves away from its upper side
 
+# ChainMail with materials: the voxels of the handle take the others along.
+(of_materials,) = read_blocks("Documents/chainmail.md", "python")
+exec(compile(of_materials, "README", "exec"), names)  # pylint: disable=exec-used
+names["chain_mail"].Update()
+assert names["chain_mail"].GetNumberOfMovedVoxels() > 27 and names["chain_mail"].GetNumberOfMaterials() == 6
+
 # The sheet of a cut.
 with tempfile.TemporaryDirectory() as folder:
     (of_sheet,) = read_blocks("Documents/deform-volume.md", "python")
