@@ -70,6 +70,10 @@ for path in [*source.glob("Kernels/*/*.cxx"), *source.glob("Kernels/*/*.h")]:
         is_above = folders.index(used) <= folders.index(path.parent.name)
         assert is_above, f"{path.relative_to(source)} includes {header} of {used}"
 
+# The version that is cited.
+version = re.search(r"project\(DeformVolume VERSION ([\d.]+)", read(source / "CMakeLists.txt"))[1]
+assert f"\nversion: {version}\n" in read(source / "CITATION.cff"), version
+
 # Options of deform-volume in commands.
 program = "".join(read(path) for path in source.glob("Examples/deform-volume/*.cxx"))
 for document in documents:
