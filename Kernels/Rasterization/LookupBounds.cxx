@@ -9,8 +9,11 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <mutex>
+#include <vector>
 
 namespace deformvolume
 {
@@ -22,12 +25,16 @@ namespace
 constexpr int BlockSize = 8;
 /// A margin that is larger than any output, in steps between points of the field.
 constexpr double Infinity = 1e9;
+/// A bound of rounding errors, in voxels or in steps between points of the field.
+constexpr double Rounding = 1e-6;
+/// The number of voxels of a box up to which each voxel is tested, and the number of vectors that
+/// are read for a larger box.
+constexpr double MostInBox = 4096.0;
 
 /// Returns the voxels in a box.
 IndexBounds RoundToVoxels(const IndexBounds& box)
 {
-  constexpr double rounding = 1e-6;
-  return { glm::ceil(box.Min - rounding), glm::floor(box.Max + rounding) };
+  return { glm::ceil(box.Min - Rounding), glm::floor(box.Max + Rounding) };
 }
 
 /// The lookup of output voxels in a volume through a field.
@@ -78,10 +85,73 @@ public:
     {
       vectors.Add(glm::dvec3(0.0));
     }
-    const IndexBounds volume = this->Transform.ToOutput(this->Volume);
-    box.Min = glm::max(box.Min, volume.Min - vectors.Max);
-    box.Max = glm::min(box.Max, volume.Max - vectors.Min);
-    return RoundToVoxels(box);
+    return this->GetPart(box, vectors);
+  }
+
+  /// Returns the part of a box of output voxels that may be mapped into the volume.
+  IndexBounds GetCandidates(const IndexBounds& voxels) const
+  {
+    IndexBounds positions; // in the field
+    for (int corner = 0; corner < 8; ++corner)
+    {
+      positions.Add(this->Grid.ToField(glm::mix(voxels.Min, voxels.Max,
+        glm::bvec3((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0))));
+    }
+    positions.Min -= Rounding;
+    positions.Max += Rounding;
+    const glm::dvec3 first = glm::clamp(positions.Min, glm::dvec3(0.0), this->Grid.Last);
+    const glm::dvec3 last = glm::clamp(positions.Max, glm::dvec3(0.0), this->Grid.Last);
+    // A trilinear function on a part of a cell is between its values at the corners of that part.
+    // IsCovered() may use the nearest point instead of a position.
+    std::array<std::vector<double>, 3> planes;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      std::vector<double>& here = planes[static_cast<std::size_t>(axis)];
+      here = { first[axis], last[axis] };
+      for (double point = std::ceil(std::max(first[axis] - DEFORMVOLUME_LOOKUP_TOLERANCE, 0.0));
+           point <= std::min(last[axis] + DEFORMVOLUME_LOOKUP_TOLERANCE, this->Grid.Last[axis]);
+           point += 1.0)
+      {
+        here.push_back(point);
+      }
+    }
+    const glm::dvec3 size = voxels.Max - voxels.Min + 1.0;
+    if (static_cast<double>(planes[0].size() * planes[1].size() * planes[2].size()) >
+      std::min(MostInBox, size.x * size.y * size.z / 16.0))
+    {
+      return voxels; // to be split
+    }
+    IndexBounds corners;
+    for (const double z : planes[2])
+    {
+      for (const double y : planes[1])
+      {
+        for (const double x : planes[0])
+        {
+          const glm::dvec3 vector = this->Interpolate({ x, y, z });
+          if (IsFinite(vector))
+          {
+            corners.Add(vector);
+          }
+        }
+      }
+    }
+    IndexBounds vectors;
+    const auto isLower = glm::greaterThan(-positions.Min, positions.Max - this->Grid.Last);
+    for (const glm::dvec3& position : { glm::clamp(first, positions.Min, positions.Max), // nearest
+           glm::mix(positions.Max, positions.Min, isLower) })                            // farthest
+    {
+      const double weight = GetWeightBeyond(this->Field, position, DEFORMVOLUME_LOOKUP_TOLERANCE);
+      if (weight == 0.0)
+      {
+        vectors.Add(glm::dvec3(0.0));
+      }
+      else if (!corners.IsEmpty())
+      {
+        vectors.Add({ weight * corners.Min, weight * corners.Max });
+      }
+    }
+    return this->GetPart(voxels, vectors);
   }
 
   bool IsCovered(const glm::dvec3& voxel) const
@@ -108,6 +178,15 @@ public:
   }
 
 private:
+  /// Returns the voxels of a box that vectors in a range may map into the volume.
+  IndexBounds GetPart(const IndexBounds& box, const IndexBounds& vectors) const
+  {
+    const IndexBounds volume = this->Transform.ToOutput(this->Volume);
+    return vectors.IsEmpty() ? IndexBounds()
+                             : RoundToVoxels({ glm::max(box.Min, volume.Min - vectors.Max),
+                                 glm::min(box.Max, volume.Max - vectors.Min) });
+  }
+
   /// Returns the box of a block of the field, in indices of the output. first, last: points of the
   /// field. hasBorder: set to whether the block has a border of the field.
   IndexBounds GetBlock(const glm::ivec3& first, const glm::ivec3& last, bool& hasBorder) const
@@ -151,9 +230,43 @@ private:
   FieldTransform Grid;
 };
 
-/// Adds the covered voxels of a box to bounds. Tests only voxels that would extend the bounds.
-void AddCovered(const Lookup& lookup, const IndexBounds& box, IndexBounds& bounds)
+/// Whether a box has voxels that are not in `known`.
+bool HasOthers(const IndexBounds& box, const IndexBounds& known)
 {
+  return glm::all(glm::lessThanEqual(box.Min, box.Max)) && !known.Contains(box);
+}
+
+/// Adds the covered voxels of a box to bounds. Tests only voxels that would extend the bounds.
+void AddCovered(const Lookup& lookup, IndexBounds box, IndexBounds& bounds)
+{
+  const auto isLarge = [](const glm::dvec3& size) { return size.x * size.y * size.z > MostInBox; };
+  if (HasOthers(box, bounds) && isLarge(box.Max - box.Min + 1.0))
+  {
+    // With a field in other units than the volume, one cell may hold billions of voxels.
+    box = lookup.GetCandidates(box);
+  }
+  if (!HasOthers(box, bounds))
+  {
+    return;
+  }
+  const glm::dvec3 size = box.Max - box.Min + 1.0;
+  if (isLarge(size))
+  {
+    for (const glm::dvec3& corner : { box.Min, box.Max })
+    {
+      if (lookup.IsCovered(corner))
+      {
+        bounds.Add(corner);
+      }
+    }
+    const int axis = size.x >= box.GetLength() + 1.0 ? 0 : size.y >= size.z ? 1 : 2;
+    IndexBounds lower = box;
+    lower.Max[axis] = std::floor(0.5 * (box.Min[axis] + box.Max[axis]));
+    box.Min[axis] = lower.Max[axis] + 1.0;
+    AddCovered(lookup, lower, bounds);
+    AddCovered(lookup, box, bounds);
+    return;
+  }
   for (double z = box.Min.z; z <= box.Max.z; z += 1.0)
   {
     for (double y = box.Min.y; y <= box.Max.y; y += 1.0)
@@ -203,11 +316,7 @@ IndexBounds ComputeLookupBounds(const VoxelGrid& voxelGrid, const DisplacementFi
       {
         const IndexBounds candidates = lookup.GetCandidates(
           { x, static_cast<int>(row % blocks.y), static_cast<int>(row / blocks.y) }, known);
-        if (glm::all(glm::lessThanEqual(candidates.Min, candidates.Max)) &&
-          !known.Contains(candidates))
-        {
-          AddCovered(lookup, candidates, known);
-        }
+        AddCovered(lookup, candidates, known);
       }
       const std::lock_guard<std::mutex> lock(mutex);
       bounds.Add(known);

@@ -3,6 +3,7 @@
 // coverage, values, and that results do not depend on slabs and work-groups.
 #include "CaughtError.h"
 #include "FieldFolds.h"
+#include "LookupBounds.h"
 #include "OutputPlace.h"
 #include "RasterCase.h"
 #include "RasterReference.h"
@@ -308,6 +309,71 @@ TEST(InverseField, VoxelsThatNeedUndefinedVectorsAreNotCovered)
     EXPECT_NE(
       GetError([&] { RunCase(deformer, c, arrays); }).find("point 100 "), std::string::npos);
   }
+}
+
+// The bounds are those of the covered voxels of a larger output. A cell of the field has thousands
+// of voxels; the field is rotated, ends inside the output, fades there, or has undefined points.
+TEST(InverseField, BoundsHoldCoveredVoxels)
+{
+  const auto values = MakeRandomValues<float>(GetNumberOfPoints(Volume), 1);
+  VolumeDeformer deformer;
+  deformer.SetDevice("");
+  for (int number = 0; number < 32; ++number)
+  {
+    InverseCase c = MakeCase(Volume, { { 3, 3, 3 } }, 0.012F);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int part = (number & 1) != 0 ? 3 : 1; // of the output that the field covers
+      const double step = 2.0 / (60 / part);
+      c.Output[2 * axis] = Volume[2 * axis] - 22;
+      c.Output[2 * axis + 1] = Volume[2 * axis] + 38;
+      c.Field.IndexToField[4 * axis + axis] = step;
+      c.Field.IndexToField[4 * axis + (axis + 1) % 3] = (number & 2) != 0 ? 0.3 * step : 0.0;
+      c.Field.IndexToField[4 * axis + 3] = 1.0 - step * (Volume[2 * axis] + 8 + number % 5);
+      c.Field.Fading[static_cast<std::size_t>(axis)] = (number & 12) == 12 ? 1.0 : 0.0;
+    }
+    c.Field.Extrapolate = (number & 4) != 0;
+    if ((number & 16) != 0)
+    {
+      std::fill_n(&c.Vectors[3 * 16], 3, std::nanf(""));
+    }
+    const Deformed deformed = RunCase(deformer, c, { MakeArray(values) });
+    IndexBounds covered;
+    std::size_t voxel = 0;
+    ForEachPoint(c.Output,
+      [&](int x, int y, int z)
+      {
+        if (deformed.Coverage[voxel++])
+        {
+          covered.Add(glm::dvec3(x, y, z));
+        }
+      });
+    const IndexBounds bounds = ComputeLookupBounds(c.VoxelGrid, c.Field);
+    EXPECT_GT(deformed.Report.NumberOfCoveredVoxels, 0) << number;
+    EXPECT_EQ(bounds.Min, covered.Min) << number;
+    EXPECT_EQ(bounds.Max, covered.Max) << number;
+  }
+}
+
+// A field in other units than the volume: a cell has 10^11 voxels. Voxels at x move to
+// x / 2 + (100, 200, 300).
+TEST(InverseField, BoundsInLargeCells)
+{
+  InverseCase c = MakeCase(Volume, { { 3, 3, 3 } }, 0.0F);
+  for (int point = 0; point < 27; ++point)
+  {
+    const int at[3] = { point % 3, point / 3 % 3, point / 9 };
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      c.Vectors[3 * point + axis] =
+        -2500.0F * static_cast<float>(at[axis] - 1) + 100.0F * static_cast<float>(axis + 1);
+    }
+  }
+  c.Field.IndexToField = { { 2e-4, 0, 0, 1, 0, 2e-4, 0, 1, 0, 0, 2e-4, 1 } };
+  c.Field.Vectors = c.Vectors.data();
+  const IndexBounds bounds = ComputeLookupBounds(c.VoxelGrid, c.Field);
+  EXPECT_EQ(bounds.Min, glm::dvec3(-206, -396, -618));
+  EXPECT_EQ(bounds.Max, glm::dvec3(-164, -368, -590));
 }
 
 // Six times the signed volume of a tetrahedron.
