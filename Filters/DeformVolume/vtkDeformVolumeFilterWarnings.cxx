@@ -81,12 +81,19 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfInputs(vtkImageData* volume,
       ". Labels in other arrays are interpolated like intensities. Correct the names with "
       "AddCategoricalArray() and RemoveCategoricalArray().");
   }
-  if (!mapped.Outside.AreExtrapolated())
+  if (auto* const field = vtkImageData::SafeDownCast(source.Shape))
   {
-    auto* const field = vtkImageData::SafeDownCast(source.Shape);
-    warnings.insert(field
-        ? deformvolume::GetSizeWarning(deformvolume::GetGeometry(field), mapped.Whole)
-        : deformvolume::GetSizeWarning(deformation.GetMeshAtRest(), mapped.Whole));
+    warnings.insert(
+      deformvolume::GetSizeWarning(deformvolume::GetGeometry(field), mapped.Whole, mapped.Outside,
+        [&]
+        {
+          this->State->Deformation.BringToHost();
+          return deformation.GetField(mapped.Outside);
+        }));
+  }
+  else if (!mapped.Outside.AreExtrapolated())
+  {
+    warnings.insert(deformvolume::GetSizeWarning(deformation.GetMeshAtRest(), mapped.Whole));
     if (HasFloats(source.GetRestParts()))
     {
       warnings.insert(deformvolume::GetRoundingWarning(deformation.GetMeshAtRest(), mapped.Whole));

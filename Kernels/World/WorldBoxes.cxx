@@ -5,12 +5,14 @@
 #include "ImageGeometry.h"
 #include "IndexBounds.h"
 #include "MeshAtRest.h"
+#include "OutsideVoxels.h"
 
 #include <glm/common.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vector_relational.hpp>
 
+#include <algorithm>
 #include <sstream>
 
 namespace deformvolume
@@ -68,10 +70,10 @@ bool IsSmall(const IndexBounds& box, const ImageGeometry& volume)
   return glm::all(glm::lessThan(box.Max - box.Min, most));
 }
 
-// Whether a box in indices of a volume is more than ten times as long as the volume on each axis.
-bool IsLarge(const IndexBounds& box, const ImageGeometry& volume)
+// Whether a box in indices of a volume is more than so many times as long as the volume on each
+// axis.
+bool IsLarge(const IndexBounds& box, const ImageGeometry& volume, double times)
 {
-  constexpr double times = 10.0;
   const IndexBounds voxels = GetBox(volume.PointExtent);
   return glm::all(glm::greaterThan(box.Max - box.Min, times * (voxels.Max - voxels.Min)));
 }
@@ -80,6 +82,12 @@ std::string DescribeSmallness(const char* what, const IndexBounds& box, const Im
 {
   return std::string("The ") + what + " is smaller than two voxels of the volume on each axis. " +
     Describe(what, box, volume);
+}
+
+bool AreVectorsEqual(const DisplacementField& field)
+{
+  const float* const end = field.Vectors + 3 * GetNumberOfPoints(field);
+  return std::equal(field.Vectors + 3, end, field.Vectors);
 }
 
 // The rounding of world coordinates of a volume in single precision.
@@ -140,11 +148,21 @@ std::string GetRoundingWarning(const MeshAtRest& mesh, const ImageGeometry& volu
                 : "";
 }
 
-std::string GetSizeWarning(const ImageGeometry& field, const ImageGeometry& volume)
+std::string GetSizeWarning(const ImageGeometry& field, const ImageGeometry& volume,
+  const OutsideVoxels& outside, const std::function<DisplacementField()>& getField)
 {
   const IndexBounds box =
     TransformBox(volume.GetWorldToIndex() * field.GetIndexToWorld(), GetBox(field.PointExtent));
-  return IsSmall(box, volume) ? DescribeSmallness("field", GetWorldBox(field), volume) : "";
+  const bool isLarge = IsLarge(box, volume, 100.0);
+  if ((!isLarge && !IsSmall(box, volume)) ||
+    // The size of a field does not matter for a translation of all voxels.
+    ((isLarge || outside.AreExtrapolated()) && AreVectorsEqual(getField())))
+  {
+    return "";
+  }
+  return isLarge ? "The field is more than a hundred times as long as the volume on each axis. " +
+      Describe("field", GetWorldBox(field), volume)
+                 : DescribeSmallness("field", GetWorldBox(field), volume);
 }
 
 std::string GetSizeWarning(const MeshAtRest& mesh, const ImageGeometry& volume)
@@ -157,7 +175,7 @@ std::string GetSizeWarning(const MeshAtRest& mesh, const ImageGeometry& volume)
     {
       own.Add(mesh.Points[static_cast<std::size_t>(node)]);
     }
-    if (IsLarge(own, volume))
+    if (IsLarge(own, volume, 10.0))
     {
       return "The cells of the mesh are more than ten times as long as the volume. " +
         Describe("mesh", FindBox(mesh, volume.GetIndexToWorld()), volume);

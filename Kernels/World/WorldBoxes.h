@@ -3,7 +3,9 @@
 #define DeformVolumeWorldBoxes_h
 
 #include "DeformVolumeExport.h"
+#include "DisplacementField.h"
 
+#include <functional>
 #include <string>
 
 namespace deformvolume
@@ -11,6 +13,7 @@ namespace deformvolume
 
 struct ImageGeometry;
 struct MeshAtRest;
+struct OutsideVoxels;
 
 /// Returns the world boxes of a displacement field and of the volume, as text for an error.
 DEFORMVOLUME_EXPORT std::string DescribeBoxes(
@@ -19,12 +22,15 @@ DEFORMVOLUME_EXPORT std::string DescribeBoxes(
 /// Throws an Error if the boxes of a mesh at rest and of the volume do not intersect.
 DEFORMVOLUME_EXPORT void CheckBoxes(const MeshAtRest& mesh, const ImageGeometry& volume);
 
-/// Returns a warning if a displacement field is so small that its unit is probably not that of the
-/// volume: on each axis of the volume smaller than two voxels, and than a fourth of the volume.
-/// Returns "" if it is not.
-DEFORMVOLUME_EXPORT std::string GetSizeWarning(
-  const ImageGeometry& field, const ImageGeometry& volume);
-/// Returns such a warning for a mesh at rest, or one if its first tetrahedron is more than ten
+/// Returns a warning if the unit of a displacement field is probably not that of the volume: if the
+/// field is, on each axis of the volume, smaller than two voxels and than a fourth of the volume,
+/// or more than a hundred times as long as the volume. Returns "" otherwise, and if all vectors are
+/// equal and all voxels have a vector. getField: returns the field; called only if its size is
+/// unusual.
+DEFORMVOLUME_EXPORT std::string GetSizeWarning(const ImageGeometry& field,
+  const ImageGeometry& volume, const OutsideVoxels& outside,
+  const std::function<DisplacementField()>& getField);
+/// Returns such a warning for a mesh at rest that is so small, or if a tetrahedron is more than ten
 /// times as long as the volume on each axis.
 DEFORMVOLUME_EXPORT std::string GetSizeWarning(const MeshAtRest& mesh, const ImageGeometry& volume);
 

@@ -424,10 +424,14 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
   {
     warn(GetRoundingWarning(*this->Volume));
   }
-  if (this->Deformation != Deformations::None && !this->Outside.AreExtrapolated())
+  if (this->IsMesh() && !this->Outside.AreExtrapolated())
   {
-    warn(this->IsMesh() ? GetSizeWarning(this->Mesh.GetMeshAtRest(), *this->Volume)
-                        : GetSizeWarning(this->Field.GetGrid(), *this->Volume));
+    warn(GetSizeWarning(this->Mesh.GetMeshAtRest(), *this->Volume));
+  }
+  else if (!this->IsMesh() && this->Deformation != Deformations::None)
+  {
+    warn(GetSizeWarning(this->Field.GetGrid(), *this->Volume, this->Outside,
+      [&] { return this->Field.GetField(this->Outside); }));
   }
   if (this->IsMesh())
   {

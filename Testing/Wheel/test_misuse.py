@@ -257,6 +257,13 @@ class Misuse(unittest.TestCase):
             warnings.simplefilter("error")
             deformvolume.deform(make_volume(), Mesh(corners, CELLS[:1], 0.01 * corners), affine, outside="extrapolate")
             deformvolume.deform(make_volume(), Mesh(9 * corners, CELLS[:1], 0.01 * corners), affine, outside="keep")
+            deformvolume.deform(make_volume(), field, affine, outside="extrapolate")  # its vectors are equal
+        field.vectors[0, 0, 0, 0] = 0.001
+        with self.assertWarnsRegex(deformvolume.DeformationWarning, "smaller than two voxels"):
+            deformvolume.deform(make_volume(), field, affine, outside="extrapolate")
+        field.affine = numpy.diag([4000.0, 4000.0, 4000.0, 1.0])
+        with self.assertWarnsRegex(deformvolume.DeformationWarning, "a hundred times as long"):
+            deformvolume.deform(make_volume(), field, AFFINE)
 
     def test_mask_keeps_other_masks(self):
         deformer = deformvolume.Deformer()

@@ -375,6 +375,21 @@ TEST_F(DeformMisuse, Units)
   deformed.Filter->SetDeformationData(mesh);
   deformed.Filter->Update();
   EXPECT_EQ(deformed.TakeWarning(), "");
+  // The size of a field does not matter if it translates all voxels.
+  for (const double spacing : { 0.01, 20000.0 })
+  {
+    for (const double slope : { 0.0, 1e-3 })
+    {
+      field->SetSpacing(spacing, spacing, spacing);
+      field->SetOrigin(-2.0 * spacing, -2.0 * spacing, -2.0 * spacing);
+      SetDisplacements(
+        field, [&](const glm::dvec3& p) { return p + glm::dvec3(1.0 + slope * p.x, 0.0, 0.0); });
+      deformed.Filter->SetDeformationData(field);
+      deformed.Filter->Update();
+      const std::string words = spacing < 1.0 ? "smaller than two" : "a hundred times as long";
+      EXPECT_EQ(HasPart(deformed.TakeWarning(), words), slope > 0.0);
+    }
+  }
 }
 
 // An output that is larger than any memory: one error before anything is allocated.
