@@ -113,7 +113,10 @@ def deform(
         deformed = deformer.deform(interpolation=interpolation)
         grid = deformer._find_output_grid()
     array = deformed.array.transpose((2, 1, 0, 3)[: deformed.array.ndim])
-    result = SimpleITK.GetImageFromArray(array, isVector=array.ndim == 4)
+    is_vector = "vector" in image.GetPixelIDTypeAsString()
+    if is_vector and array.ndim == 3:  # SimpleITK gives no axis to a single component
+        array = array[..., numpy.newaxis]
+    result = SimpleITK.GetImageFromArray(array, isVector=is_vector)
     result.SetOrigin(deformed.affine[:3, 3].tolist())
     result.SetSpacing(grid.spacing[:])
     result.SetDirection(grid.direction[:])

@@ -49,6 +49,11 @@ expect(TypeError, "The reference is a ndarray", lambda: ds.deform(image, field, 
 flat = sitk.DisplacementFieldTransform(sitk.Image([4, 4], sitk.sitkVectorFloat64))
 expect(ValueError, "2 dimensions", lambda: ds.deform(image, flat))
 
+for pixels in (1, 2):
+    vector = sitk.Image([10, 9, 8], sitk.sitkVectorUInt16, pixels)
+    deformed = ds.deform(vector, field)
+    assert deformed.GetPixelID() == vector.GetPixelID() and deformed.GetNumberOfComponentsPerPixel() == pixels
+
 for reference in (None, fixed):
     for interpolation, wanted in (("linear", sitk.sitkLinear), ("nearest", sitk.sitkNearestNeighbor)):
         transform = sitk.DisplacementFieldTransform(sitk.Image(field))
