@@ -23,10 +23,13 @@ def native(array, what: str) -> numpy.ndarray:
             f"{what} is a {type(array).__name__}. Give an array with the axes x, y, z: itk.array_from_image() returns "
             "the axes z, y, x. For images of SimpleITK and VTK, there are deformvolume.sitk and deformvolume.vtk."
         )
+    given = type(array).__name__
     array = numpy.asarray(array)
     if not array.dtype.isnative:
         array = array.astype(array.dtype.newbyteorder("="))
     if array.dtype != numpy.bool_ and array.dtype.name not in _structs.TYPES:
+        if array.ndim == 0:
+            raise TypeError(f"{what} is a {given}. Give an array.")
         raise TypeError(f"{what} has the type {array.dtype}. Give integers of 8 to 64 bits, float32, float64 or bool.")
     return array
 
@@ -81,7 +84,10 @@ def vectors(array, number, what: str) -> numpy.ndarray:
 
 def affine(matrix, what: str) -> numpy.ndarray:
     """Returns a checked 4 x 4 matrix from indices of voxels to world coordinates."""
-    matrix = numpy.asarray(matrix, dtype=numpy.float64)
+    try:
+        matrix = numpy.asarray(matrix, dtype=numpy.float64)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"The type of {what} is {type(matrix).__name__}. It must be a 4 x 4 matrix.") from error
     if matrix.shape != (4, 4):
         raise ValueError(f"The shape of {what} is {matrix.shape}. It must be a 4 x 4 matrix.")
     if not numpy.array_equal(matrix[3], (0, 0, 0, 1)):

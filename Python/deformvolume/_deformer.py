@@ -243,8 +243,26 @@ class _Interrupts:
             self._handlers[number](number, frame)
 
 
+def _integer(value, what: str) -> int:
+    """Returns an integer of 32 bits."""
+    try:
+        number = operator.index(value)
+    except TypeError as error:
+        raise TypeError(f"{what} is {value!r}. Give an integer.") from error
+    if not -(2**31) <= number < 2**31:
+        raise ValueError(f"{what} is {value}. Give a smaller number.")
+    return number
+
+
+def _number(value, what: str) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{what} is {value!r}. Give a number.") from error
+
+
 def _choose(value: str, choices: Dict[str, int], what: str) -> int:
-    if value not in choices:
+    if not isinstance(value, str) or value not in choices:
         raise ValueError(f'{what} is "{value}". Choose one of {", ".join(choices)}.')
     return choices[value]
 
@@ -446,7 +464,7 @@ class Deformer:
             struct.components = image.shape[3] if image.ndim == 4 else 1
             struct.categorical = _flag(is_label, "categorical")
             struct.density = is_density
-            struct.background = 0.0 if is_density else float(value)
+            struct.background = 0.0 if is_density else _number(value, "The background")
             if math.isnan(struct.background) and image.dtype.kind in "iub":
                 raise ValueError(f"The background is {value}, which an array of the type {image.dtype} cannot hold.")
         with self._locked():
@@ -622,7 +640,8 @@ class Deformer:
         """
         if mode != "keep" and fade_distance != 0:
             raise ValueError(f'The fade distance is {fade_distance}, but has no effect with outside="{mode}".')
-        self._call("dv_set_outside", _choose(mode, _structs.OUTSIDE, "outside"), float(fade_distance))
+        distance = _number(fade_distance, "The fade distance")
+        self._call("dv_set_outside", _choose(mode, _structs.OUTSIDE, "outside"), distance)
 
     def set_reference(self, reference: Union[Grid, Tuple[Sequence[int], numpy.ndarray], None]) -> None:
         """Sets the grid of the output, such as that of the fixed image of a registration. None: see set_output()."""
@@ -635,8 +654,13 @@ class Deformer:
                 "matrix, such as (image.shape, image.affine)."
             )
         shape, matrix = reference
-        shape = tuple(map(operator.index, shape))
-        if len(shape) != 3 or min(shape) < 1:
+        if numpy.shape(shape) != (3,):
+            raise ValueError(
+                f"The first element of the reference is an array of the shape {numpy.shape(shape)}. It must be a shape "
+                "of three integers, as in (image.shape, image.affine)."
+            )
+        shape = tuple(_integer(number, "A number of the shape of the reference") for number in shape)
+        if min(shape) < 1:
             raise ValueError(f"The shape of the reference is {shape}. Give three numbers of at least 1.")
         self._set_reference_grid(_grid_of(shape, matrix, "the affine matrix of the reference"))
 
@@ -659,25 +683,22 @@ class Deformer:
             padding: width of a border on each side, in voxels. A negative width crops the output.
             spacing: three numbers in world units; None: that of the volume.
         """
-        padding = operator.index(padding)
-        if not -(2**31) < padding < 2**31:
-            raise ValueError(f"The padding is {padding} voxels. Give a smaller number.")
-        struct = _structs.Output(padding=padding)
+        struct = _structs.Output(padding=_integer(padding, "The padding"))
         if isinstance(bounds, str):
             names = {name: _structs.BOUNDS[name] for name in ("deformed", "volume")}
             struct.bounds_mode = _choose(bounds, names, "bounds")
         else:
-            if len(bounds) != 6:
+            if numpy.shape(bounds) != (6,):
                 raise ValueError(
-                    f"bounds has {len(bounds)} numbers. Give six (x min, x max, y min, y max, z min, z max), "
-                    '"deformed" or "volume".'
+                    f"bounds has the shape {numpy.shape(bounds)}. Give six numbers (x min, x max, y min, y max, z min, "
+                    'z max), "deformed" or "volume".'
                 )
             struct.bounds_mode = _structs.BOUNDS["custom"]
-            struct.custom_bounds[:] = [float(bound) for bound in bounds]
+            struct.custom_bounds[:] = [_number(bound, "A number of bounds") for bound in bounds]
         if spacing is not None:
             if numpy.shape(spacing) != (3,):
                 raise ValueError(f"The spacing is {spacing}. Give three numbers.")
-            struct.spacing[:] = [float(value) for value in spacing]
+            struct.spacing[:] = [_number(value, "A number of the spacing") for value in spacing]
             if not all(value > 0.0 for value in struct.spacing):
                 raise ValueError(f"The spacing is {spacing}. Give three numbers greater than 0.")
         self._call("dv_set_output", ctypes.byref(struct))
@@ -723,15 +744,24 @@ class Deformer:
         with self._locked():
             grid = self._find_output_grid()
             shape = tuple(grid.extent[2 * axis + 1] - grid.extent[2 * axis] + 1 for axis in range(3))
-            outputs = [
-                numpy.empty(shape[::-1] + array.shape[3:], dtype) for array, dtype in zip(self._arrays, self._types)
-            ]
-            coverage = numpy.empty(shape[::-1], numpy.int8)
-            extra = {
-                "rest_positions": numpy.empty(shape[::-1] + (3,), numpy.float32) if wanted["rest_positions"] else None,
-                "jacobian": numpy.empty(shape[::-1], numpy.float32) if wanted["jacobian"] else None,
-                "fold_count": numpy.zeros(shape[::-1], numpy.uint32) if wanted["fold_count"] else None,
+            kinds = [(array.shape[3:], dtype) for array, dtype in zip(self._arrays, self._types)]
+            extra_kinds = {
+                "rest_positions": ((3,), numpy.float32),
+                "jacobian": ((), numpy.float32),
+                "fold_count": ((), numpy.uint32),
             }
+            try:
+                outputs = [numpy.empty(shape[::-1] + components, dtype) for components, dtype in kinds]
+                coverage = numpy.empty(shape[::-1], numpy.int8)
+                extra = {
+                    name: numpy.empty(shape[::-1] + components, dtype) if wanted[name] else None
+                    for name, (components, dtype) in extra_kinds.items()
+                }
+            except (MemoryError, ValueError) as error:  # ValueError: more elements than an array can have
+                raise MemoryError(
+                    f"The output has {shape} voxels, and the volume {self._shape}: {error}. Check that the volume and "
+                    "the deformation have the same unit, or limit the output by bounds, spacing or reference."
+                ) from error
             report = self._run(
                 outputs,
                 coverage,
@@ -779,7 +809,7 @@ class Deformer:
             number_of_outputs=len(outputs),
             outputs=ctypes.cast(addresses, ctypes.POINTER(ctypes.c_void_p)),
             coverage=coverage.ctypes.data_as(ctypes.POINTER(ctypes.c_int8)),
-            extra_background=float(extra_background),
+            extra_background=_number(extra_background, "extra_background"),
         )
         kinds = {"rest_positions": ctypes.c_float, "jacobian": ctypes.c_float, "fold_count": ctypes.c_uint32}
         for name, array in extra.items():

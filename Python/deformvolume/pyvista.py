@@ -103,8 +103,9 @@ def deform(image, deformation, *, vectors=None, rest=None, reference=None, categ
     for name, value in properties.items():
         if not hasattr(deformer, f"Set{name}"):
             raise TypeError(
-                f"DeformVolume has no property {name}. Properties have the names of the C++ class, such as "
-                "OutsideMode=DeformVolume.KEEP: see help(deformvolume.vtk.DeformVolume)."
+                f"deformvolume.vtk.DeformVolume has no property {name}. help(deformvolume.vtk.DeformVolume) lists its "
+                "properties, such as OutsideMode=DeformVolume.KEEP. It has not all properties of the C++ class "
+                "vtkDeformVolumeFilter, which is in the Python package deformvolume_vtk."
             )
         getattr(deformer, f"Set{name}")(value)
     deformer.Update()

@@ -182,8 +182,19 @@ class Misuse(unittest.TestCase):
         self.refuse(ValueError, "with a reference", reference=((5, 5, 5), AFFINE), bounds="volume")
         self.refuse(ValueError, "padding is", padding=2**40)
         self.refuse(TypeError, "masked array", numpy.ma.masked_less(make_volume(), 0.5))
-        self.refuse(TypeError, "integer", padding=1.5)
-        self.refuse(TypeError, "integer", reference=((5.5, 5, 5), AFFINE))
+        self.refuse(TypeError, "The padding is 1.5. Give an integer", padding=1.5)
+        self.refuse(TypeError, "shape of the reference is 5.5. Give an integer", reference=((5.5, 5, 5), AFFINE))
+        words = r"first element of the reference is an array of the shape \(4, 4\)"
+        self.refuse(ValueError, words, reference=(AFFINE, (5, 5, 5)))
+        mesh = Mesh(POINTS, CELLS, MOVED)
+        self.refuse(TypeError, "affine matrix of the volume is Mesh", mesh=AFFINE, affine=mesh)
+        self.refuse(TypeError, "Array 0 of the volume is a Mesh. Give an array", mesh, make_volume())
+        self.refuse(TypeError, "The background is None", background=None)
+        self.refuse(TypeError, "The fade distance is 'far'", outside="keep", fade_distance="far")
+        self.refuse(TypeError, "extra_background is None", extra_background=None)
+        self.refuse(TypeError, "A number of bounds is None", bounds=[None] * 6)
+        self.refuse(ValueError, "bounds has the shape", bounds=None)
+        self.refuse(ValueError, "outside is", outside=["keep"])
         self.refuse(TypeError, "jacobian is 'no'", jacobian="no")
         self.refuse(ValueError, "no effect", fade_distance=3.0)
         self.refuse(ValueError, "int16 cannot hold", make_volume().astype("int16"), background=numpy.nan)
@@ -264,6 +275,10 @@ class Misuse(unittest.TestCase):
         field.affine = numpy.diag([4000.0, 4000.0, 4000.0, 1.0])
         with self.assertWarnsRegex(deformvolume.DeformationWarning, "a hundred times as long"):
             deformvolume.deform(make_volume(), field, AFFINE)
+        # An output that cannot be allocated.
+        vectors = 25000.0 * numpy.indices((2, 2, 2)).transpose((1, 2, 3, 0))
+        field = deformvolume.Field(vectors, numpy.diag([18.0, 20.0, 22.0, 1.0]))
+        self.refuse(MemoryError, r"voxels, and the volume \(10, 11, 12\).*same unit", mesh=field)
 
     def test_mask_keeps_other_masks(self):
         deformer = deformvolume.Deformer()
