@@ -217,7 +217,9 @@ extern "C"
   DV_EXPORT int32_t dv_set_memory_limit(dv_deformer* deformer, uint64_t bytes);
 
   /** Sets the grid of the volume at rest, with at least two points on each axis. If the grid
-   * differs from the previous one, arrays and masks are discarded. */
+   * differs from the previous one, arrays and masks are discarded. For a block of a larger volume,
+   * give the extent of the block in that volume: the split of cells into tetrahedra alternates
+   * between even and odd indices. */
   DV_EXPORT int32_t dv_set_volume(dv_deformer* deformer, const dv_grid* grid);
 
   /** Sets the arrays of the volume. Their data are borrowed. count may be 0 if

@@ -277,9 +277,9 @@ def make_grid(extent, origin, spacing, direction) -> _structs.Grid:
     )
 
 
-def _grid_of(shape: Sequence[int], matrix, what: str) -> _structs.Grid:
+def _grid_of(shape: Sequence[int], matrix, what: str, first: Sequence[int] = (0, 0, 0)) -> _structs.Grid:
     origin, spacing, direction = _arrays.split_affine(_arrays.affine(matrix, what))
-    extent = [0, shape[0] - 1, 0, shape[1] - 1, 0, shape[2] - 1]
+    extent = [end for axis in range(3) for end in (first[axis], first[axis] + shape[axis] - 1)]
     return make_grid(extent, origin, spacing, direction)
 
 
@@ -404,6 +404,7 @@ class Deformer:
         categorical: Union[bool, Sequence[bool]] = False,
         background: Union[float, Sequence[float]] = 0.0,
         density: Union[bool, Sequence[bool]] = False,
+        first_index: Sequence[int] = (0, 0, 0),
     ) -> None:
         """Sets the volume at rest.
 
@@ -411,7 +412,8 @@ class Deformer:
             arrays: one or several arrays on the same grid. Axes: x, y, z and, optionally, an axis of components. Types:
                 all integer types, float32, float64 and bool, whose result is also bool: interpolated as 0 and 1, and
                 rounded. Arrays in Fortran order are not copied, and must not change until other arrays are set. For
-                arrays with the axes z, y, x, such as SimpleITK's, give array.T.
+                arrays with the axes z, y, x, such as SimpleITK's, give array.T; for arrays with the components on axis
+                0, as in torch, numpy.moveaxis(array, 0, -1).
             affine: 4 x 4 matrix from the index (i, j, k, 1) of a voxel to world coordinates.
             categorical: whether arrays hold labels, which are not interpolated; one value for all arrays, or one for
                 each.
@@ -421,6 +423,10 @@ class Deformer:
                 arrays, or one for each. Their values are divided by the Jacobian determinant, so that their sum times
                 the volume of a voxel is preserved. The result is float64 for float64, otherwise float32. Their
                 background is 0, whatever `background` is; voxels at which the volume is inside out have it, too.
+            first_index: for a block of a larger volume, the index in that volume of the block's first voxel. affine is
+                then the matrix of the larger volume. The split of cells into tetrahedra alternates between even and odd
+                indices, so that without this argument a block that begins at an odd index is interpolated differently
+                from the larger volume.
 
         If the grid changes, masks are removed.
         """
@@ -435,7 +441,15 @@ class Deformer:
                     f"Array {number} of the volume has {image.shape[2::-1]} voxels, but array 0 has {shape}. Give "
                     "arrays on the same grid."
                 )
-        grid = _grid_of(shape, affine, "the affine matrix of the volume")
+            if image.ndim == 4 and shape[0] <= 4 < image.shape[3]:
+                _warn(
+                    f"Array {number} of the volume has {shape} voxels with {image.shape[3]} components each. If its "
+                    "axis 0 holds the components, give numpy.moveaxis(array, 0, -1)."
+                )
+        if numpy.shape(first_index) != (3,):
+            raise ValueError(f"first_index is {first_index!r}. Give three integers.")
+        first = [_integer(index, "An element of first_index") for index in first_index]
+        grid = _grid_of(shape, affine, "the affine matrix of the volume", first)
         self._set_volume_grid(grid, images, categorical, background, density)
 
     def _set_volume_grid(
@@ -900,6 +914,7 @@ def deform(
     categorical: Union[bool, Sequence[bool]] = False,
     background: Union[float, Sequence[float]] = 0.0,
     density: Union[bool, Sequence[bool]] = False,
+    first_index: Sequence[int] = (0, 0, 0),
     outside: str = "discard",
     fade_distance: float = 0.0,
     interpolation: str = "linear",
@@ -920,7 +935,7 @@ def deform(
         deformation: a Mesh or a Field.
         affine: 4 x 4 matrix from the index of a voxel to world coordinates; None: the identity.
         reference: the grid of the output; None: given by bounds, padding and spacing, see Deformer.set_output().
-        categorical, background, density: see Deformer.set_volume().
+        categorical, background, density, first_index: see Deformer.set_volume().
         outside, fade_distance: see Deformer.set_outside().
         interpolation, rest_positions, jacobian, fold_count, extra_background, progress: see Deformer.deform().
         device: see Deformer.
@@ -946,6 +961,7 @@ def deform(
             categorical=categorical,
             background=background,
             density=density,
+            first_index=first_index,
         )
         deformer.set_deformation(deformation)
         deformer.set_outside(outside, fade_distance)

@@ -321,9 +321,10 @@ def test_pipelines():
 
 
 def test_arrays():
-    # Structured indices of numpy arrays begin at 0. The split of cells into tetrahedra depends on the parity of these
-    # indices, so the extent of the VTK image begins at an even index.
-    image = make_image(first=2)
+    # The split of cells into tetrahedra depends on the parity of structured indices, here of an image that begins at an
+    # odd index.
+    image = make_image()
+    first_index = image.GetExtent()[::2]
     mesh = bend(make_mesh(image, 5))
     deformer = Filter()
     deformer.SetInputData(image)
@@ -340,13 +341,15 @@ def test_arrays():
         arrays.append(array.reshape(shape[::-1] + array.shape[1:]).transpose((2, 1, 0, 3)[: array.ndim + 2]))
     affine = np.eye(4)
     affine[:3, :3] = TURNED * image.GetSpacing()
-    affine[:3, 3] = image.GetOrigin() + affine[:3, :3] @ image.GetExtent()[::2]
+    affine[:3, 3] = image.GetOrigin()
     deformation = dv.Mesh(
         vtk_to_numpy(mesh.GetPoints().GetData()),
         vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 4),
         vtk_to_numpy(mesh.GetPointData().GetVectors()),
     )
-    result = dv.deform(arrays, deformation, affine, categorical=[False, False, True], jacobian=True)
+    result = dv.deform(
+        arrays, deformation, affine, categorical=[False, False, True], jacobian=True, first_index=first_index
+    )
     assert result.array.shape == wanted.GetDimensions(), (result.array.shape, wanted.GetDimensions())
     assert result.counts["number_of_covered_voxels"] == result.coverage.sum() > 1000 and result.device
     origin = np.array(wanted.GetOrigin()) + TURNED @ (np.array(wanted.GetSpacing()) * wanted.GetExtent()[::2])
@@ -367,13 +370,14 @@ def test_arrays():
         first.astype(first.dtype.newbyteorder()),
     ):
         other.flags.writeable = False
-        again = dv.deform(other, deformation, affine)
+        again = dv.deform(other, deformation, affine, first_index=first_index)
         assert again.array.tobytes() == result.arrays[0].tobytes()
     mask = arrays[0] > 2
     assert dv.deform(mask, deformation, affine, categorical=True).array.dtype == bool
     # Points and cells of other types.
     for points, cells in ((deformation.points.astype(float), deformation.cells.astype(np.int32)),):
-        again = dv.deform(first, dv.Mesh(points, cells, deformation.displacements.astype(float)), affine)
+        mesh = dv.Mesh(points, cells, deformation.displacements.astype(float))
+        again = dv.deform(first, mesh, affine, first_index=first_index)
         assert again.array.tobytes() == result.arrays[0].tobytes()
     # Cells other than tetrahedra: a hexahedron that does not move.
     corners = np.array([[x, y, z] for z in (0, 1) for y, x in ((0, 0), (0, 1), (1, 1), (1, 0))], float)

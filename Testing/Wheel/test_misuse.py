@@ -195,6 +195,9 @@ class Misuse(unittest.TestCase):
         self.refuse(TypeError, "A number of bounds is None", bounds=[None] * 6)
         self.refuse(ValueError, "bounds has the shape", bounds=None)
         self.refuse(ValueError, "outside is", outside=["keep"])
+        self.refuse(ValueError, "first_index is 5", first_index=5)
+        with self.assertWarnsRegex(deformvolume.DeformationWarning, "moveaxis"):
+            deformvolume.Deformer().set_volume(numpy.zeros((3, 10, 11, 12)), AFFINE)
         self.refuse(TypeError, "jacobian is 'no'", jacobian="no")
         self.refuse(ValueError, "no effect", fade_distance=3.0)
         self.refuse(ValueError, "int16 cannot hold", make_volume().astype("int16"), background=numpy.nan)
