@@ -435,7 +435,7 @@ MUTATIONS = {
     "changes-before": ("Filters/vtkArrayChanges.cxx", "time < this->Begin ||", "", ["Cxx.TestArrayChanges"]),
     "changes-copies": ("Filters/vtkArrayChanges.cxx", "log && log->Array == array ? log", "log ? log",
                        ["Cxx.TestArrayChanges"]),
-    "mesh-hidden": ("Filters/DeformationMesh/MeshCells.cxx", "if (skipped.ContainPointOf(points, count))", "if (false)",
+    "mesh-hidden": ("Filters/DeformationMesh/MeshCells.cxx", "if (skipped.ContainPointOf(points, count) || ", "if (",
                     ["Cxx.TestDeformMeshes"]),
     "body-hidden": ("Filters/Physics/BodyReading.cxx", "if (skipped.ContainPointOf(points, size))", "if (false)",
                     ["Cxx.TestElasticDeformation"]),

@@ -137,18 +137,19 @@ std::array<int, 3> ReadDegrees(vtkDataArray* array, vtkIdType cell)
   return degrees;
 }
 
-// named: number of derived nodes that cells may use.
-void ReadPart(
-  vtkUnstructuredGrid* grid, std::int32_t firstNode, vtkIdType named, CellReader& reader)
+// other: whose hidden cells are skipped, too. named: number of derived nodes that cells may use.
+void ReadPart(vtkUnstructuredGrid* grid, vtkUnstructuredGrid* other, std::int32_t firstNode,
+  vtkIdType named, CellReader& reader)
 {
   const SkippedCells skipped(grid, "deformation mesh");
+  const SkippedCells skippedInOther(other, "deformation mesh");
   const vtkIdType numberOfCells = grid->GetNumberOfCells();
   const vtkIdType numberOfPoints = grid->GetNumberOfPoints() + named;
   CheckStructure(grid);
   std::vector<std::int32_t> nodes;
   for (vtkIdType cell = 0; cell < numberOfCells; ++cell)
   {
-    if (skipped.Contain(cell))
+    if (skipped.Contain(cell) || skippedInOther.Contain(cell))
     {
       continue;
     }
@@ -160,7 +161,7 @@ void ReadPart(
     {
       CheckCellPoint(points[i], numberOfPoints, cell);
     }
-    if (skipped.ContainPointOf(points, count))
+    if (skipped.ContainPointOf(points, count) || skippedInOther.ContainPointOf(points, count))
     {
       continue;
     }
@@ -195,7 +196,7 @@ void ReadPart(
 } // namespace
 
 MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest, const DerivedNodes* derived,
-  const std::vector<std::int32_t>* places)
+  const std::vector<std::int32_t>* places, const MeshParts* other)
 {
   std::size_t numberOfCells = 0;
   vtkIdType numberOfNodes = 0;
@@ -218,11 +219,15 @@ MeshCells ReadCells(const MeshParts& parts, const MeshParts& rest, const Derived
   }
   reader.Reserve(numberOfCells);
   std::int32_t firstNode = 0;
-  for (vtkUnstructuredGrid* grid : parts)
+  for (std::size_t part = 0; part < parts.size(); ++part)
   {
+    vtkUnstructuredGrid* grid = parts[part];
     if (grid->GetNumberOfCells() > 0)
     {
-      ReadPart(grid, firstNode, derived ? static_cast<vtkIdType>(derived->GetCount()) : 0, reader);
+      const bool hasOther = other && part < other->size() &&
+        (*other)[part]->GetNumberOfCells() == grid->GetNumberOfCells();
+      ReadPart(grid, hasOther ? (*other)[part] : grid, firstNode,
+        derived ? static_cast<vtkIdType>(derived->GetCount()) : 0, reader);
     }
     firstNode += static_cast<std::int32_t>(grid->GetNumberOfPoints());
   }

@@ -203,8 +203,8 @@ MeshGathering::Piece MeshGathering::Read(
   {
     return piece;
   }
-  MeshCells cells = ReadCells(rest, rest, nullptr, places);
-  if (source.Rest && ReadCells(shape, rest, nullptr, places).Tetrahedra != cells.Tetrahedra)
+  MeshCells cells = ReadCells(rest, rest, nullptr, places, &shape);
+  if (source.Rest && ReadCells(shape, rest, nullptr, places, &rest).Tetrahedra != cells.Tetrahedra)
   {
     throw Error("The cells of the deformation mesh are not those of the mesh at rest. "
                 "Use one mesh, at rest and deformed, divided into the same pieces.");

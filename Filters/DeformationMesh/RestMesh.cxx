@@ -104,7 +104,8 @@ void RestMesh::Read(const MeshParts& shape, const MeshParts& rest, const Deforma
   if ((nodes < nodesBefore || hasFailed) && !AreNodes(this->Tetrahedra, this->Points.size()))
   {
     this->ShapeIsOld = true;
-    deformvolume::ReadCells(rest, rest, source.Derived); // throws an Error that says what is wrong
+    deformvolume::ReadCells(
+      rest, rest, source.Derived, nullptr, &shape); // throws an Error that says what is wrong
     throw Error(
       "The deformation mesh has cells that use points that do not exist. Correct the cells of the "
       "mesh.");
@@ -164,13 +165,9 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
   reading.DependOnPoints = this->CellsDependOnPoints;
   const bool isSameRest = restCells.IsThatOf(this->RestCells) &&
     (!this->CellsDependOnPoints || !this->HavePointsChanged(rest, source));
-  if (isSameRest)
+  const auto readRest = [&]
   {
-    reading.Differences = Changes();
-  }
-  else
-  {
-    MeshCells cells = deformvolume::ReadCells(rest, rest, source.Derived);
+    MeshCells cells = deformvolume::ReadCells(rest, rest, source.Derived, nullptr, &shape);
     if (cells.Tetrahedra.empty())
     {
       throw Error("The deformation mesh has no tetrahedra" +
@@ -184,12 +181,28 @@ RestMesh::CellReading RestMesh::ReadCells(const MeshParts& shape, const MeshPart
     reading.Derived = std::move(cells.Derived);
     reading.Differences = FindDifferences(this->Tetrahedra, cells.Tetrahedra);
     reading.All = std::move(cells.Tetrahedra);
+  };
+  if (isSameRest)
+  {
+    reading.Differences = Changes();
   }
-  const bool isCompared =
-    shapeCells.HasArraysOf(restCells) || (isSameRest && shapeCells.IsThatOf(this->ShapeCells));
-  if (!isCompared &&
-    deformvolume::ReadCells(shape, rest, source.Derived).Tetrahedra !=
-      (isSameRest ? this->Tetrahedra : reading.All))
+  else
+  {
+    readRest();
+  }
+  const bool isSameShape = shapeCells.IsThatOf(this->ShapeCells) ||
+    (shapeCells.HasArraysOf(restCells) && this->ShapeCells.HasArraysOf(this->RestCells));
+  if (isSameRest ? isSameShape : shapeCells.HasArraysOf(restCells))
+  {
+    return reading;
+  }
+  const std::vector<Tetrahedron> tetrahedra =
+    deformvolume::ReadCells(shape, rest, source.Derived, nullptr, &rest).Tetrahedra;
+  if (isSameRest && tetrahedra != this->Tetrahedra)
+  {
+    readRest(); // other cells of the deformation mesh may be hidden than before
+  }
+  if (tetrahedra != (reading.All.empty() ? this->Tetrahedra : reading.All))
   {
     throw Error("The cells of the deformation mesh are not those of the mesh at rest. "
                 "Use one mesh, at rest and deformed.");

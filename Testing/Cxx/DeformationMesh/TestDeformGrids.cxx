@@ -283,6 +283,47 @@ TEST(DeformGrids, Degrees)
   meshes.Expect("other degrees", 1);
 }
 
+// A cell is left out if one of the two meshes hides it, in whatever order this changes.
+TEST(DeformGrids, HiddenInOneMesh)
+{
+  Meshes meshes;
+  const auto hide = [](const Grid& mesh, vtkIdType cell)
+  {
+    const auto ghosts = MakeArray<vtkUnsignedCharArray>(
+      vtkDataSetAttributes::GhostArrayName(), mesh->GetNumberOfCells());
+    if (cell >= 0)
+    {
+      ghosts->SetValue(cell, vtkDataSetAttributes::HIDDENCELL);
+    }
+    mesh->GetCellData()->AddArray(ghosts);
+    mesh->Modified();
+  };
+  meshes.Rest = meshes.Mesh;
+  const Grid shape = Copy(meshes.Rest);
+  meshes.Give(shape);
+  meshes.Tested.Filter->SetRestData(meshes.Rest);
+  const vtkIdType all = meshes.Volume->GetNumberOfPoints();
+  const auto expect = [&](const char* what, int builds, bool isHidden)
+  {
+    meshes.Expect(what, builds);
+    EXPECT_EQ(meshes.Tested.Filter->GetNumberOfCoveredVoxels() < all, isHidden) << what;
+  };
+  expect("nothing hidden", 0, false);
+  hide(shape, 301);
+  expect("hidden in the deformed mesh", 1, true);
+  hide(meshes.Rest, 301);
+  expect("hidden in both", 0, true);
+  hide(shape, -1);
+  expect("hidden at rest", 0, true);
+  hide(meshes.Rest, -1);
+  expect("nothing hidden again", 1, false);
+  hide(shape, 302);
+  expect("another cell hidden", 1, true);
+  const Grid same = ShareArrays(meshes.Rest);
+  meshes.Give(same);
+  expect("one mesh twice", 1, false);
+}
+
 TEST(DeformGrids, TwoMeshes)
 {
   Meshes meshes;
