@@ -155,7 +155,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfSplits(vtkImageData* volume)
   }
   deformvolume::Extent voxels;
   volume->GetExtent(voxels.data());
-  this->State->Splits.Update(mesh.GetMeshAtRest());
+  this->State->Splits.Update(mesh.GetMeshAtRest(), this->Self->OutsideMode == DISCARD);
   const std::string text = this->State->Splits.Describe(mesh.GetNodeDisplacements(), voxels);
   // The search for hidden voxels takes long.
   const bool warns = !text.empty() && !volume->HasAnyBlankPoints() && !volume->HasAnyBlankCells();

@@ -2,25 +2,64 @@
 #include "SplitNodes.h"
 
 #include "CoincidentPoints.h"
+#include "FaceNeighbors.h"
 #include "IndexBounds.h"
 #include "MeshAtRest.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
+#include <algorithm>
 #include <cstddef>
 
 namespace deformvolume
 {
 
-void SplitNodes::Update(const MeshAtRest& mesh)
+namespace
 {
-  if (this->Owner == mesh.Owner && this->Connectivity == mesh.ConnectivityVersion)
+
+// Returns for each node whether coincident faces have different nodes at its position. lowest: the
+// lowest node at the position of each node.
+std::vector<unsigned char> FindSplitPositions(
+  const std::vector<Tetrahedron>& tetrahedra, const std::vector<std::int32_t>& lowest)
+{
+  std::vector<Tetrahedron> joined = tetrahedra;
+  for (Tetrahedron& tetrahedron : joined)
+  {
+    for (std::int32_t& node : tetrahedron)
+    {
+      node = lowest[static_cast<std::size_t>(node)];
+    }
+  }
+  const FaceNeighbors neighbors(joined, lowest.size());
+  std::vector<unsigned char> isSplit(lowest.size(), 0);
+  for (std::size_t face = 0; face < neighbors.GetNumberOfFaces(); ++face)
+  {
+    const Tetrahedron& nodes = tetrahedra[face / 4];
+    const Tetrahedron& others = tetrahedra[neighbors.GetNext(face) / 4];
+    for (std::size_t k = 0; k < 4; ++k)
+    {
+      if (k != face % 4 && std::find(others.begin(), others.end(), nodes[k]) == others.end())
+      {
+        isSplit[static_cast<std::size_t>(joined[face / 4][k])] = 1;
+      }
+    }
+  }
+  return isSplit;
+}
+
+} // namespace
+
+void SplitNodes::Update(const MeshAtRest& mesh, bool onFaces)
+{
+  if (this->Owner == mesh.Owner && this->Connectivity == mesh.ConnectivityVersion &&
+    this->OnFaces == onFaces)
   {
     return;
   }
   this->Owner = mesh.Owner;
   this->Connectivity = mesh.ConnectivityVersion;
+  this->OnFaces = onFaces;
   this->Pairs.clear();
   const std::vector<std::int32_t> lowest = FindCoincidentPoints(mesh.Points);
   constexpr std::int32_t unused = -1;
@@ -39,6 +78,17 @@ void SplitNodes::Update(const MeshAtRest& mesh)
       }
       known = 1;
     }
+  }
+  if (onFaces && !this->Pairs.empty())
+  {
+    const std::vector<unsigned char> isSplit = FindSplitPositions(mesh.Tetrahedra, lowest);
+    this->Pairs.erase(std::remove_if(this->Pairs.begin(), this->Pairs.end(),
+                        [&](const Pair& pair)
+                        {
+                          const std::int32_t node = lowest[static_cast<std::size_t>(pair.First)];
+                          return isSplit[static_cast<std::size_t>(node)] == 0;
+                        }),
+      this->Pairs.end());
   }
 }
 

@@ -20,8 +20,10 @@ struct MeshAtRest;
 class DEFORMVOLUME_EXPORT SplitNodes
 {
 public:
-  /// Finds the nodes, unless this is the mesh of the last call.
-  void Update(const MeshAtRest& mesh);
+  /// Finds the nodes, unless this is the mesh of the last call. onFaces: whether only nodes of
+  /// faces count that coincide with another face. Without voxels outside the mesh, cells of the
+  /// volume between two bodies are stretched only where faces of both coincide (MeshBoundary).
+  void Update(const MeshAtRest& mesh, bool onFaces);
   /// Returns the beginning of a warning if such nodes move apart by more than an output voxel, so
   /// that the volume is stretched over a gap; otherwise "". displacements: three floats per node,
   /// in output voxels. voxels: those of the volume. Splits beside them do not count.
@@ -38,6 +40,7 @@ private:
   std::vector<Pair> Pairs;
   const void* Owner = nullptr;
   std::uint64_t Connectivity = 0;
+  bool OnFaces = false;
 };
 
 } // namespace deformvolume

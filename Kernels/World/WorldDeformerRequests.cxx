@@ -448,7 +448,7 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
     const WorldMasks& masks = this->Masks;
     if (!isRasterized && !masks.Blanked && !masks.ActiveTetrahedra && !masks.CutTetrahedra)
     {
-      this->Splits.Update(mesh);
+      this->Splits.Update(mesh, this->Outside.AreDiscarded());
       const std::string split =
         this->Splits.Describe(this->Mesh.GetNodeDisplacements(), this->Volume->PointExtent);
       warn(split.empty() ? "" : split + " Cut the volume along the split, or merge these nodes.");

@@ -4,6 +4,7 @@
 // tested.
 #include "FilterTesting.h"
 
+#include <vtkAppendFilter.h>
 #include <vtkCellArray.h>
 #include <vtkIdList.h>
 
@@ -178,6 +179,34 @@ TEST(DeformSplits, Slit)
   };
   EXPECT_EQ(countEmpty(4), Pull);
   EXPECT_EQ(countEmpty(38), 0);
+}
+
+// Two bodies that touch, whose parts move apart. With different faces, the gap between them is
+// empty; only tissue that follows the boundary of the mesh is stretched over it.
+TEST(DeformSplits, Warning)
+{
+  const auto volume = MakeVolume({ { 0, 19, 0, 9, 0, 9 } });
+  for (const bool areEqual : { true, false })
+  {
+    vtkNew<vtkAppendFilter> append;
+    append->AddInputData(
+      MakeTetrahedra({ { -1.0, 9.5, -1.0, 10.0, -1.0, 10.0 } }, { { 3, 3, 3 } }));
+    append->AddInputData(MakeTetrahedra(
+      { { 9.5, 20.0, -1.0, 10.0, -1.0, 10.0 } }, { { 3, areEqual ? 3 : 4, areEqual ? 3 : 5 } }));
+    append->Update();
+    vtkUnstructuredGrid* mesh = append->GetOutput();
+    const vtkIdType first = 3 * 3 * 3;
+    SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+    for (vtkIdType node = first; node < mesh->GetNumberOfPoints(); ++node)
+    {
+      mesh->GetPointData()->GetVectors()->SetTuple3(node, 5.0, 0.0, 0.0);
+    }
+    Deformed tested(volume, mesh);
+    EXPECT_EQ(CountGap(tested.Expect(areEqual ? "is split" : "")), areEqual ? 0 : 5);
+    Deformed extrapolated(volume, mesh);
+    extrapolated.Filter->SetOutsideModeToExtrapolate();
+    EXPECT_EQ(CountGap(extrapolated.Expect("is split")), 0);
+  }
 }
 
 } // namespace
