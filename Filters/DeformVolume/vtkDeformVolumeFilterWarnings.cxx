@@ -237,9 +237,13 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfNothing() const
     text = "The deformed volume covers no voxel of the output, so the whole output is background. "
            "Check ";
     text += this->Reference
-      ? "that the reference image overlaps the deformed volume, in the same world coordinates,"
-      : "the output bounds and the output spacing,";
-    text += " and that the deformation mesh holds neighboring voxels of the volume.";
+      ? "that the reference image overlaps the deformed volume, in the same world coordinates"
+      : "the output bounds and the output spacing";
+    text += this->Self->GetNumberOfInputConnections(1) == 0 ? "."
+      : this->State->Deformation.IsField()
+      ? ", and that the displacement field holds neighboring voxels of the volume on each axis. A "
+        "field of one slice does not."
+      : ", and that the deformation mesh holds neighboring voxels of the volume.";
   }
   vtkWarningWithObjectMacro(this->Self, << text);
 }

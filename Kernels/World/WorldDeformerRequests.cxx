@@ -479,9 +479,13 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
         ? "The inverse displacement field leads from no voxel of the output to the volume: all of "
           "the output is background. Check that the field holds points of the output, that its "
           "vectors lead from there to the volume, and that all are in the same world coordinates."
-        : "The deformed volume covers no voxel of the output: all of it is background. Check the "
-          "grid of the output, and that the deformation mesh holds neighboring voxels of the "
-          "volume.");
+        : std::string("The deformed volume covers no voxel of the output: all of it is background. "
+                      "Check the grid of the output") +
+          (this->Deformation == Deformations::None ? "."
+              : this->IsMesh()
+              ? ", and that the deformation mesh holds neighboring voxels of the volume."
+              : ", and that the displacement field holds neighboring voxels of the volume on each "
+                "axis. A field of one slice does not."));
   }
 }
 

@@ -213,6 +213,16 @@ TEST(DeformSources, FlatTetrahedraAreCounted)
   EXPECT_EQ(deformed.Filter->GetNumberOfFlatTetrahedra(), 2);
 }
 
+// A field of one slice holds no two neighboring voxels on one of the axes.
+TEST(DeformSources, FieldOfOneSlice)
+{
+  auto volume = MakeFloatVolume();
+  auto field = MakeImage({ { 0, 13, 0, 11, 5, 5 } });
+  SetDisplacements(field, Shift(0.0, 0.0, 0.0));
+  Deformed deformed(volume, field);
+  deformed.Expect("and that the displacement field holds neighboring voxels");
+}
+
 TEST(DeformSources, DisplacementFields)
 {
   auto volume = MakeFloatVolume();
