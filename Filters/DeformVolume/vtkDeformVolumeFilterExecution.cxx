@@ -66,7 +66,7 @@ int vtkDeformVolumeFilter::RequestData(
   {
     this->Internals->TakeReport(results.Report, request.Method);
     this->Internals->WarnOfSplits(inputs.MaskedVolume);
-    this->Internals->WarnOfFading(inputs.Mapped, request.WholeOutputExtent);
+    this->Internals->WarnOfFading(inputs.MaskedVolume, inputs.Mapped, request.WholeOutputExtent);
     this->Internals->WarnOfLoss(results.Loss);
   }
   this->Internals->AddUpCounts(ranks);

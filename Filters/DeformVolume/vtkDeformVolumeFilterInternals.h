@@ -229,9 +229,10 @@ public:
   /// Warns if the volume is stretched over the gap of a split mesh, once for a shape of the mesh.
   /// volume: with its masks.
   void WarnOfSplits(vtkImageData* volume);
-  /// Warns if kept voxels are certainly torn or folded, if the deformation has changed. output: the
-  /// whole extent of the output.
-  void WarnOfFading(const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output);
+  /// Warns if kept voxels are certainly torn or folded, once for each change of the deformation.
+  /// volume: with its masks. output: the whole extent of the output.
+  void WarnOfFading(vtkImageData* volume, const deformvolume::MappedVolume& mapped,
+    const deformvolume::Extent& output);
   void WarnOfFadingField(
     const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output);
 

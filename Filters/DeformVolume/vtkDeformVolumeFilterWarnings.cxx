@@ -170,7 +170,7 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfSplits(vtkImageData* volume)
 }
 
 //------------------------------------------------------------------------------
-void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(
+void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(vtkImageData* volume,
   const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output)
 {
   const deformvolume::Deformation& mesh = this->State->Deformation;
@@ -193,12 +193,15 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(
   {
     return;
   }
-  this->State->VersionsOfFading = versions;
+  const deformvolume::VolumeMasks read = deformvolume::ReadMasks(volume, {});
+  const deformvolume::WorldMasks masks{ read.Blanked, read.Active, read.Distances.Values,
+    read.Cut.Crossed, read.Cut.Distances.Values, read.BlankedBits };
   const std::string text =
     deformvolume::GetFadingWarning(links, mesh.GetTetrahedra(), mesh.GetNodeDisplacements(),
-      this->GetOutputGeometry(mapped.Whole).Spacing, mapped.Outside.FadeDistance);
+      this->GetOutputGeometry(mapped.Whole).Spacing, mapped.Outside.FadeDistance, masks);
   if (!text.empty())
   {
+    this->State->VersionsOfFading = versions; // otherwise another mask may call for a warning
     vtkWarningWithObjectMacro(this->Self, << text);
   }
 }

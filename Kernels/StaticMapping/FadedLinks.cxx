@@ -340,10 +340,11 @@ glm::dvec3 FadedLinks::Displace(const VertexLink& link, const std::vector<Tetrah
   return sum;
 }
 
-std::int64_t FadedLinks::CountStretched(
-  const std::vector<Tetrahedron>& tetrahedra, const float* displacements) const
+std::int64_t FadedLinks::CountStretched(const std::vector<Tetrahedron>& tetrahedra,
+  const float* displacements,
+  const std::function<bool(const StretchedTetrahedra::Candidate&)>& isWhole) const
 {
-  return this->Stretched.Count(*this, tetrahedra, displacements);
+  return this->Stretched.Count(*this, tetrahedra, displacements, isWhole);
 }
 
 double FadedLinks::GetLongestDisplacement(const std::vector<Tetrahedron>& tetrahedra,

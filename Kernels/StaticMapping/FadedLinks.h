@@ -65,11 +65,13 @@ public:
   IndexBounds ComputeBounds(const VoxelGrid& voxelGrid, const std::vector<Tetrahedron>& tetrahedra,
     const float* displacements) const;
 
-  /// Counts the tetrahedra of the sampling mesh, active or not, that are stretched over more than 2
-  /// output voxels on an axis because their vertices follow distant parts of the boundary. If there
-  /// are many candidates, the number is an estimate from a sample of them.
-  std::int64_t CountStretched(
-    const std::vector<Tetrahedron>& tetrahedra, const float* displacements) const;
+  /// Counts the tetrahedra of the sampling mesh that are stretched over more than 2 output voxels
+  /// on an axis because their vertices follow distant parts of the boundary. isWhole: as in
+  /// StretchedTetrahedra. If there are many candidates, the number is an estimate from a sample of
+  /// them.
+  std::int64_t CountStretched(const std::vector<Tetrahedron>& tetrahedra,
+    const float* displacements,
+    const std::function<bool(const StretchedTetrahedra::Candidate&)>& isWhole = {}) const;
   /// Whether the number of the last CountStretched() is an estimate.
   bool IsCountEstimated() const { return this->Stretched.IsCountEstimated(); }
 

@@ -67,12 +67,11 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
   const std::vector<glm::dvec3>& restPoints, const std::vector<Tetrahedron>& tetrahedra,
   const std::vector<TetrahedronFace>& faces, const std::vector<VertexLink>& links)
 {
-  this->Stretchable.clear();
+  this->Candidates.clear();
   const auto still = static_cast<std::int32_t>(tetrahedra.size());
   const std::int64_t size = GetSize(voxels, 0);
   const std::int64_t plane = size * GetSize(voxels, 1);
   const std::int64_t layers = std::max<std::int64_t>(GetSize(voxels, 2) - 1, 0);
-  using Vertices = std::array<std::int64_t, 4>;
   // Whether two vertices follow points that are too far apart. On a convex boundary, the closest
   // points of two voxels are not farther apart than the voxels.
   const auto isStretchable = [&](const std::array<Anchor, 8>& anchors,
@@ -96,7 +95,7 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
     }
     return false;
   };
-  const auto findInCell = [&](int x, int y, int z, std::vector<Vertices>& found)
+  const auto findInCell = [&](int x, int y, int z, std::vector<Candidate>& found)
   {
     const std::int64_t first = z * plane + y * size + x;
     std::array<Anchor, 8> anchors;
@@ -127,25 +126,27 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
         restPoints, tetrahedra, faces);
     }
     const int mirror = DEFORMVOLUME_MIRROR(voxels[0] + x, voxels[2] + y, voxels[4] + z);
-    for (const auto& tetrahedron : FiveTetrahedra)
+    for (int tetrahedron = 0; tetrahedron < 5; ++tetrahedron)
     {
       int vertices[4];
       for (int k = 0; k < 4; ++k)
       {
-        vertices[k] = tetrahedron[k] ^ mirror;
+        vertices[k] = FiveTetrahedra[tetrahedron][k] ^ mirror;
       }
       if (isStretchable(anchors, positions, vertices))
       {
-        Vertices& one = found.emplace_back();
+        Candidate& one = found.emplace_back();
+        one.Cell = first - y - z * (size + GetSize(voxels, 1) - 1); // there are fewer cells
+        one.Tetrahedron = tetrahedron;
         for (std::size_t k = 0; k < 4; ++k)
         {
-          one[k] = numbers[static_cast<std::size_t>(vertices[k])];
+          one.Vertices[k] = numbers[static_cast<std::size_t>(vertices[k])];
         }
       }
     }
   };
-  const std::vector<Vertices> found = CollectItems<Vertices>(static_cast<std::size_t>(layers), 1,
-    [&](std::size_t layer, std::vector<Vertices>& some)
+  const std::vector<Candidate> found = CollectItems<Candidate>(static_cast<std::size_t>(layers), 1,
+    [&](std::size_t layer, std::vector<Candidate>& some)
     {
       const auto z = static_cast<int>(layer);
       ForEachPoint(
@@ -156,19 +157,20 @@ void StretchedTetrahedra::Find(const Extent& voxels, const glm::dvec3& spacing,
   this->Step = std::max<std::int64_t>(1, (count + MostStretchable - 1) / MostStretchable);
   for (std::int64_t i = 0; i < count; i += this->Step)
   {
-    std::array<VertexLink, 4>& one = this->Stretchable.emplace_back();
+    Candidate& one = this->Candidates.emplace_back(found[static_cast<std::size_t>(i)]);
     for (std::size_t k = 0; k < 4; ++k)
     {
-      one[k] = links[static_cast<std::size_t>(found[static_cast<std::size_t>(i)][k])];
+      one.Links[k] = links[static_cast<std::size_t>(one.Vertices[k])];
     }
   }
 }
 
 std::int64_t StretchedTetrahedra::Count(const FadedLinks& links,
-  const std::vector<Tetrahedron>& tetrahedra, const float* displacements) const
+  const std::vector<Tetrahedron>& tetrahedra, const float* displacements,
+  const std::function<bool(const Candidate&)>& isWhole) const
 {
   std::atomic<std::int64_t> count{ 0 };
-  ParallelForParts(this->Stretchable.size(), 1024,
+  ParallelForParts(this->Candidates.size(), 1024,
     [&](std::size_t begin, std::size_t end)
     {
       std::int64_t some = 0;
@@ -176,14 +178,15 @@ std::int64_t StretchedTetrahedra::Count(const FadedLinks& links,
       {
         glm::dvec3 low(std::numeric_limits<double>::infinity());
         glm::dvec3 high(-std::numeric_limits<double>::infinity());
-        for (const VertexLink& link : this->Stretchable[i])
+        for (const VertexLink& link : this->Candidates[i].Links)
         {
           const glm::dvec3 moved = links.Displace(link, tetrahedra, displacements);
           low = glm::min(low, moved);
           high = glm::max(high, moved);
         }
         const glm::dvec3 size = high - low;
-        some += std::max({ size.x, size.y, size.z }) > StretchLimit ? 1 : 0;
+        const bool isStretched = std::max({ size.x, size.y, size.z }) > StretchLimit;
+        some += isStretched && (!isWhole || isWhole(this->Candidates[i])) ? 1 : 0;
       }
       count += some;
     });

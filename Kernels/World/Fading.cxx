@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Fading.h"
 
+#include "DeviceSession.h" // for WorldMasks
 #include "Error.h"
 
 #include <glm/geometric.hpp>
@@ -50,6 +51,28 @@ double GetLongestOnBorder(const DisplacementField& field, const glm::dvec3& spac
   return longest;
 }
 
+// Whether a tetrahedron is resampled, and a smooth cut does not divide it.
+bool IsWhole(const WorldMasks& masks, const StretchedTetrahedra::Candidate& candidate)
+{
+  const auto cell = static_cast<std::size_t>(candidate.Cell);
+  const unsigned int bit = 1U << static_cast<unsigned int>(candidate.Tetrahedron);
+  int carved = 0;
+  int beyond = 0;
+  for (const std::int64_t vertex : candidate.Vertices)
+  {
+    const auto number = static_cast<std::size_t>(vertex);
+    if (masks.Blanked && (masks.Blanked[number] & masks.BlankedBits) != 0)
+    {
+      return false;
+    }
+    carved += masks.BoundaryDistances && masks.BoundaryDistances[number] < 0.0F ? 1 : 0;
+    beyond += masks.CutDistances && masks.CutDistances[number] < 0.0F ? 1 : 0;
+  }
+  const bool isActive = !masks.ActiveTetrahedra || (masks.ActiveTetrahedra[cell] & bit) != 0;
+  const bool isCrossed = masks.CutTetrahedra && (masks.CutTetrahedra[cell] & bit) != 0;
+  return isActive && carved < 4 && !(isCrossed && beyond > 0 && beyond < 4);
+}
+
 } // namespace
 
 std::string GetFoldWarning(const std::string& border, double longest, double fadeDistance)
@@ -65,10 +88,18 @@ std::string GetFoldWarning(const std::string& border, double longest, double fad
 }
 
 std::string GetFadingWarning(const FadedLinks& links, const std::vector<Tetrahedron>& tetrahedra,
-  const float* displacements, const glm::dvec3& spacing, double fadeDistance)
+  const float* displacements, const glm::dvec3& spacing, double fadeDistance,
+  const WorldMasks& masks)
 {
-  std::string text;
-  const std::int64_t stretched = links.CountStretched(tetrahedra, displacements);
+  // Fading alone stretches as much as a jump then, and a smaller fade distance would be worse.
+  std::string text = GetFoldWarning("boundary of the deformation mesh moves",
+    links.GetLongestDisplacement(tetrahedra, displacements, spacing), fadeDistance);
+  if (!text.empty())
+  {
+    return text;
+  }
+  const std::int64_t stretched = links.CountStretched(tetrahedra, displacements,
+    [&](const StretchedTetrahedra::Candidate& candidate) { return IsWhole(masks, candidate); });
   if (stretched > 0)
   {
     text = (links.IsCountEstimated() ? "About " : "") + std::to_string(stretched) +
@@ -80,10 +111,7 @@ std::string GetFadingWarning(const FadedLinks& links, const std::vector<Tetrahed
       : "as the fade distance is 0 and the boundary of the mesh moves. Set a fade distance of at "
         "least twice its displacement, unless the volume is cut there.";
   }
-  const double longest = links.GetLongestDisplacement(tetrahedra, displacements, spacing);
-  const std::string folds =
-    GetFoldWarning("boundary of the deformation mesh moves", longest, fadeDistance);
-  return text + (text.empty() || folds.empty() ? "" : " ") + folds;
+  return text;
 }
 
 std::string GetFadingWarning(const DisplacementField& field, const IndexBounds& box,

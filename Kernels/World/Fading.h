@@ -17,6 +17,8 @@
 namespace deformvolume
 {
 
+struct WorldMasks;
+
 /// Returns the mode in which voxels outside a mesh or a field keep their positions, except within
 /// fadeDistance, where the displacement of the border fades to 0. fadeDistance: in world units.
 /// Throws an Error if it is not finite or negative.
@@ -28,13 +30,14 @@ DEFORMVOLUME_EXPORT OutsideVoxels MakeKeptVoxels(double fadeDistance);
 DEFORMVOLUME_EXPORT std::string GetFoldWarning(
   const std::string& border, double longest, double fadeDistance);
 
-/// Returns warnings about the fading of displacements outside a mesh: the number of tetrahedra
-/// between voxels that follow distant parts of the boundary, and possible folds. "" if there are
-/// none. displacements: three floats per node, in output voxels. spacing: the spacing of the
-/// output.
+/// Returns a warning about the fading of displacements outside a mesh: of possible folds, otherwise
+/// of the number of tetrahedra between voxels that follow distant parts of the boundary. "" if
+/// there is nothing to warn of. displacements: three floats per node, in output voxels. spacing:
+/// the spacing of the output. masks: of the volume. Tetrahedra that are switched off, hidden,
+/// carved out or divided by a smooth cut do not count.
 DEFORMVOLUME_EXPORT std::string GetFadingWarning(const FadedLinks& links,
   const std::vector<Tetrahedron>& tetrahedra, const float* displacements, const glm::dvec3& spacing,
-  double fadeDistance);
+  double fadeDistance, const WorldMasks& masks);
 
 /// Returns a warning if the border of a field moves by too much for FadeDistance, and a part of a
 /// box is outside the field; otherwise "". box: in the indices that IndexToField of the field

@@ -457,7 +457,7 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
     if (!links.IsEmpty() && this->Mapping.IsCurrent(mesh, this->GetMapped()))
     {
       warn(GetFadingWarning(links, mesh.Tetrahedra, this->Mesh.GetNodeDisplacements(),
-        this->GetOutputGrid().Spacing, this->Outside.FadeDistance));
+        this->GetOutputGrid().Spacing, this->Outside.FadeDistance, masks));
     }
   }
   else if (this->Outside.AreKept())

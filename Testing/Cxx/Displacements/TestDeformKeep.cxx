@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // OutsideMode KEEP: tissue outside the deformation mesh is kept, and its displacement fades to zero
 // within FadeDistance.
+#include "ArrayMaking.h"
 #include "KeepTesting.h"
 
 #include "vtkCutVolume.h"
@@ -11,6 +12,7 @@
 #include <vtkAppendFilter.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkFloatArray.h>
 #include <vtkIdList.h>
 #include <vtkPlaneSource.h>
 #include <vtkUnsignedCharArray.h>
@@ -60,6 +62,18 @@ vtkSmartPointer<vtkImageData> MakeTissue(
     [](const glm::dvec3& p)
     { return std::sin(1.3 * p.x + p.y) * p.z + 5.0 * std::cos(p.x * p.y); });
   return volume;
+}
+
+vtkSmartPointer<vtkFloatArray> AddDistances(
+  vtkImageData* volume, const char* name, const WorldFunction& function)
+{
+  const auto array = MakeArray<vtkFloatArray>(name, volume->GetNumberOfPoints());
+  for (vtkIdType id = 0; id < volume->GetNumberOfPoints(); ++id)
+  {
+    array->SetValue(id, static_cast<float>(function(GetPoint(volume, id))));
+  }
+  volume->GetPointData()->AddArray(array);
+  return array;
 }
 
 TEST(DeformKeep, Misuse)
@@ -228,7 +242,10 @@ TEST(DeformKeep, Warnings)
   apart(3.5);
   subject.Expect("are stretched");
   subject.Filter->SetFadeDistance(2.5);
-  subject.Expect("moves by up to 3.5");
+  subject.Filter->Update();
+  const std::string advice = subject.TakeWarning();
+  EXPECT_TRUE(HasPart(advice, "moves by up to 3.5"));
+  EXPECT_EQ(advice.find("smaller"), std::string::npos) << "the fade distance is too small already";
   apart(1.6);
   subject.Expect("");
   apart(1.7);
@@ -238,6 +255,60 @@ TEST(DeformKeep, Warnings)
   subject.Expect("");
   apart(2.1);
   subject.Expect("as the fade distance is 0");
+}
+
+// Tetrahedra that are switched off, hidden, carved out or divided are not reported as stretched.
+TEST(DeformKeep, WarningsWithMasks)
+{
+  const auto volume = MakeTissue({ { 0, 24, 0, 19, 0, 17 } });
+  const auto mesh = MakeBox(glm::dvec3(5.2), glm::dvec3(12.7));
+  SetDisplacements(mesh, Shift(3.0, 0.0, 0.0));
+  Kept subject(volume, mesh, 0.0);
+  const std::string words = "as the fade distance is 0";
+  subject.Expect(words);
+  subject.Expect("");
+  const auto isInside = [](const glm::dvec3& p)
+  { return glm::clamp(p, glm::dvec3(5.2), glm::dvec3(12.7)) == p; };
+  const auto active = AddActiveTetrahedra(volume);
+  for (vtkIdType cell = 0; cell < volume->GetNumberOfCells(); ++cell)
+  {
+    vtkNew<vtkIdList> corners;
+    volume->GetCellPoints(cell, corners);
+    int inside = 0;
+    for (vtkIdType k = 0; k < 8; ++k)
+    {
+      inside += isInside(GetPoint(volume, corners->GetId(k))) ? 1 : 0;
+    }
+    active->SetValue(cell, inside > 0 && inside < 8 ? 0 : 31);
+  }
+  SetDisplacements(mesh, Shift(3.1, 0.0, 0.0));
+  subject.Expect("");
+  int cell[3] = { 12, 8, 8 };
+  active->SetValue(volume->ComputeCellId(cell), 31);
+  active->Modified();
+  subject.Expect("5 tetrahedra of the volume");
+  volume->GetCellData()->RemoveArray("ActiveTetrahedra");
+  // The tetrahedra are carved out.
+  const auto distances = AddDistances(volume, "BoundaryDistance",
+    [&](const glm::dvec3& p)
+    { return glm::clamp(p, glm::dvec3(7.0), glm::dvec3(11.0)) == p ? 1.0 : -1.0; });
+  SetDisplacements(mesh, Shift(3.2, 0.0, 0.0));
+  subject.Expect("");
+  distances->Fill(1.0);
+  distances->Modified();
+  subject.Expect(words);
+  // A smooth cut along the boundary of the mesh divides them.
+  const auto crossed = MakeArray<vtkUnsignedCharArray>("CutTetrahedra", volume->GetNumberOfCells());
+  crossed->Fill(31.0);
+  volume->GetCellData()->AddArray(crossed);
+  AddDistances(
+    volume, "CutDistance", [&](const glm::dvec3& p) { return isInside(p) ? -1.0 : 1.0; });
+  SetDisplacements(mesh, Shift(3.3, 0.0, 0.0));
+  subject.Expect("");
+  volume->GetCellData()->RemoveArray("CutTetrahedra");
+  volume->GetPointData()->RemoveArray("CutDistance");
+  volume->Modified();
+  subject.Expect(words);
 }
 
 // Displacements and masks change, and the mesh is split. The output must be equal to that of a new

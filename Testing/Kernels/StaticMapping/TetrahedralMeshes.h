@@ -107,6 +107,23 @@ inline Mesh MakeSoup(
   return mesh;
 }
 
+/// A mesh of two bodies.
+inline Mesh Join(const Mesh& first, const Mesh& second)
+{
+  Mesh mesh = first;
+  const auto offset = static_cast<std::int32_t>(first.Points.size());
+  mesh.Points.insert(mesh.Points.end(), second.Points.begin(), second.Points.end());
+  for (deformvolume::Tetrahedron tetrahedron : second.Tetrahedra)
+  {
+    for (std::int32_t& node : tetrahedron)
+    {
+      node += offset;
+    }
+    mesh.Tetrahedra.push_back(tetrahedron);
+  }
+  return mesh;
+}
+
 /// The structured indices of a voxel.
 inline glm::ivec3 GetVoxel(const deformvolume::Extent& voxels, std::int64_t index)
 {
