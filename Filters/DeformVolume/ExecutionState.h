@@ -92,7 +92,8 @@ struct ExecutionState
   Extent LastNeeded = EmptyExtent;
 
   deformvolume::SplitNodes Splits;
-  std::uint64_t WarnedOfSplitsOf = 0; // the version of the shape; 0: not warned
+  std::uint64_t WarnedOfSplitsOf = 0;  // the version of the shape; 0: not warned
+  std::uint64_t WarnedOfOverlapOf = 0; // the version of the shape; 0: not warned
   // Versions of the mapping and of the vectors of the last warning of WarnOfFading().
   std::pair<std::uint64_t, std::uint64_t> VersionsOfFading;
   // The last warning about the fading of a field.

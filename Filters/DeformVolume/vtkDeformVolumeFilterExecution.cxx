@@ -66,6 +66,7 @@ int vtkDeformVolumeFilter::RequestData(
   {
     this->Internals->TakeReport(results.Report, request.Method);
     this->Internals->WarnOfSplits(inputs.MaskedVolume);
+    this->Internals->WarnOfOverlap(inputs.Mapped);
     this->Internals->WarnOfFading(inputs.MaskedVolume, inputs.Mapped, request.WholeOutputExtent);
     this->Internals->WarnOfLoss(results.Loss);
   }

@@ -229,6 +229,8 @@ public:
   /// Warns if the volume is stretched over the gap of a split mesh, once for a shape of the mesh.
   /// volume: with its masks.
   void WarnOfSplits(vtkImageData* volume);
+  /// Warns if bodies of the mesh overlap at rest, once for a shape of the mesh.
+  void WarnOfOverlap(const deformvolume::MappedVolume& mapped);
   /// Warns if kept voxels are certainly torn or folded, once for each change of the deformation.
   /// volume: with its masks. output: the whole extent of the output.
   void WarnOfFading(vtkImageData* volume, const deformvolume::MappedVolume& mapped,

@@ -170,6 +170,24 @@ void vtkDeformVolumeFilter::vtkInternals::WarnOfSplits(vtkImageData* volume)
 }
 
 //------------------------------------------------------------------------------
+void vtkDeformVolumeFilter::vtkInternals::WarnOfOverlap(const deformvolume::MappedVolume& mapped)
+{
+  const deformvolume::Deformation& mesh = this->State->Deformation;
+  if (mesh.IsField() || this->Self->ResamplerInUse == MESH_RASTERIZATION ||
+    !this->State->Mapping.IsCurrent(mesh.GetMeshAtRest(), mapped))
+  {
+    return;
+  }
+  const std::string text = deformvolume::DescribeOverlap(this->State->Mapping.GetMapping());
+  const std::uint64_t shape = mesh.GetRestMesh().GetShapeVersion();
+  if (!text.empty() && this->State->WarnedOfOverlapOf != shape)
+  {
+    this->State->WarnedOfOverlapOf = shape;
+    vtkWarningWithObjectMacro(this->Self, << text);
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkDeformVolumeFilter::vtkInternals::WarnOfFading(vtkImageData* volume,
   const deformvolume::MappedVolume& mapped, const deformvolume::Extent& output)
 {

@@ -6,6 +6,7 @@
 #include "BoxTree.h"
 #include "ClosestFace.h"
 #include "IndexBounds.h"
+#include "TetrahedronOrder.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace deformvolume
@@ -56,6 +56,7 @@ class MeshPointMap::Internals
 public:
   Internals(const Points& points, const std::vector<Tetrahedron>& tetrahedra)
     : Tetrahedra(tetrahedra)
+    , Order(points, tetrahedra)
     , Rest(this->Search(points))
   {
   }
@@ -129,7 +130,7 @@ public:
   };
 
   /// Finds the tetrahedron that contains a point. If there are several, a tetrahedron that is not
-  /// inverted is preferred, then the lowest number.
+  /// inverted is preferred, then the first one in the order of the mesh at rest.
   Holder Find(const Configuration& configuration, const glm::dvec3& point) const
   {
     const bool isAtRest = &configuration == &this->Rest;
@@ -142,10 +143,6 @@ public:
       [&](std::size_t i)
       {
         const auto number = static_cast<std::int32_t>(i);
-        if (!isBestNear && !best.IsInverted && number > best.Number)
-        {
-          return true;
-        }
         Holder found;
         found.Number = number;
         const Tetrahedron& nodes = this->Tetrahedra[i];
@@ -172,9 +169,10 @@ public:
         }
         found.IsInverted = !isAtRest &&
           (GetVolume(nodes, positions) > 0.0) != (GetVolume(nodes, *this->Rest.Positions) > 0.0);
-        if (best.Number < 0 ||
-          std::make_tuple(!holds, found.IsInverted, found.Number) <
-            std::make_tuple(isBestNear, best.IsInverted, best.Number))
+        const std::pair<bool, bool> rank(!holds, found.IsInverted);
+        const std::pair<bool, bool> bestRank(isBestNear, best.IsInverted);
+        if (best.Number < 0 || rank < bestRank ||
+          (rank == bestRank && this->Order.ComesBefore(number, best.Number)))
         {
           best = found;
           isBestNear = !holds;
@@ -271,6 +269,7 @@ public:
   }
 
   const std::vector<Tetrahedron>& Tetrahedra;
+  const TetrahedronOrder Order;
   const Configuration Rest;
   bool PointsAreFloats = false;
   std::vector<TetrahedronFace> Faces;

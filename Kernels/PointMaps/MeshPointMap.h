@@ -13,8 +13,9 @@
 namespace deformvolume
 {
 
-/// The deformation of points by a mesh. A point follows the first tetrahedron that contains it. The
-/// arguments of the constructor must outlive the object.
+/// The deformation of points by a mesh. A point follows the tetrahedron that contains it; of
+/// several, the first one in the TetrahedronOrder. The arguments of the constructor must outlive
+/// the object.
 class DEFORMVOLUME_EXPORT MeshPointMap : public PointMap
 {
 public:

@@ -43,8 +43,9 @@ public:
   /// Maps a point. Returns false if the deformation is not defined there.
   virtual bool Map(const glm::dvec3& point, Image& image) const = 0;
   /// Finds the point that is mapped to `point`, and the derivatives of the inverse map. Of several
-  /// solutions, one where the map is not inverted is preferred, then the one in the lowest
-  /// tetrahedron or cell, then one outside. Returns false if there is no solution.
+  /// solutions, one where the map is not inverted is preferred, then the one in the first
+  /// tetrahedron (TetrahedronOrder) or the lowest cell, then one outside. Returns false if there is
+  /// no solution.
   bool Invert(const glm::dvec3& point, Image& image) const;
 
 protected:

@@ -126,6 +126,7 @@ StaticMapping StaticMappingBuilder::Build(
   {
     mapping.Boundary = FindMeshBoundary(part, this->Voxels, this->RestPoints, this->Tetrahedra);
   }
+  mapping.SharedVoxel = this->Linker->GetSharedVoxel();
   mapping.NumberOfFlatTetrahedra = this->Linker->GetTiles().GetNumberOfFlatTetrahedra();
   return mapping;
 }

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace deformvolume
@@ -58,6 +59,8 @@ struct StaticMapping
   std::int64_t NumberOfInnerVoxels = 0;
   /// Number of tetrahedra without volume, which are skipped.
   std::int64_t NumberOfFlatTetrahedra = 0;
+  /// A voxel that lies in two bodies of the mesh that overlap at rest. Empty if none was found.
+  std::optional<glm::i64vec3> SharedVoxel;
 };
 
 /// Finds the tetrahedron of each voxel. The tetrahedra are rasterized into the voxel grid, in
@@ -67,9 +70,11 @@ struct StaticMapping
 ///
 /// A voxel in several tetrahedra, such as a voxel on a face, is linked to the tetrahedron whose
 /// nodes come first in lexicographic order: the positions of the first nodes are compared by x,
-/// then y, then z, then those of the second nodes, and so on. So the mapping does not depend on the
-/// numbers of nodes and tetrahedra. Only if tetrahedra have equal positions, the tetrahedron with
-/// the lowest number is used. Links and runs select the same tetrahedra.
+/// then y, then z, then those of the second nodes, and so on. If the tetrahedra belong to different
+/// bodies, parts of the mesh that share no position of a node, a voxel in both follows the body
+/// with less volume. So the mapping does not depend on the numbers of nodes and tetrahedra. Only if
+/// tetrahedra have equal positions, the tetrahedron with the lowest number is used. Links and runs
+/// select the same tetrahedra.
 ///
 /// voxels: extent of the volume. restPoints: the nodes at rest, in continuous indices of the
 /// volume. outside: voxels outside the mesh have no link (Discard), are linked to the tetrahedron

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 namespace deformvolume
 {
@@ -42,6 +43,19 @@ void Link(std::int32_t& tetrahedron, std::int32_t id, const glm::dvec3&)
   tetrahedron = id;
 }
 
+// Whether a voxel lies inside a tetrahedron, and not on its surface within rounding.
+bool IsWithin(const BarycentricMap& map, const glm::i64vec3& voxel)
+{
+  const glm::dvec4 weights = map.GetAllWeights(glm::dvec3(voxel));
+  bool isWithin = true;
+  for (int node = 0; node < 4; ++node)
+  {
+    // The weight is the distance from the face times the length of the gradient.
+    isWithin = isWithin && weights[node] > RoundingDistance * glm::length(map.GetGradient(node));
+  }
+  return isWithin;
+}
+
 } // namespace
 
 VoxelLinker::VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& restPoints,
@@ -50,24 +64,27 @@ VoxelLinker::VoxelLinker(const Extent& voxels, const std::vector<glm::dvec3>& re
   , Tetrahedra(tetrahedra)
   , Voxels(MakeVoxelBox(voxels))
   , Tiles(voxels, restPoints, tetrahedra, Margin)
+  , Order(restPoints, tetrahedra)
 {
 }
 
-bool VoxelLinker::ComesBefore(std::int32_t id, std::int32_t other) const
+bool VoxelLinker::TakesVoxel(
+  std::int32_t id, const BarycentricMap& map, std::int32_t other, const glm::i64vec3& voxel) const
 {
-  for (int node = 0; node < 4; ++node)
+  if (!this->Order.AreInOneBody(id, other))
   {
-    const glm::dvec3& a = this->RestPoints[this->Tetrahedra[id][node]];
-    const glm::dvec3& b = this->RestPoints[this->Tetrahedra[other][node]];
-    for (int axis = 0; axis < 3; ++axis)
+    // On the surfaces of both bodies, the voxel may lie between them.
+    BarycentricMap otherMap;
+    otherMap.SetTetrahedron(this->Tetrahedra[other], this->RestPoints);
+    if (IsWithin(map, voxel) || IsWithin(otherMap, voxel))
     {
-      if (a[axis] != b[axis])
-      {
-        return a[axis] < b[axis];
-      }
+      const std::lock_guard<std::mutex> lock(this->SharedMutex);
+      const auto getKey = [](const glm::i64vec3& v) { return std::make_tuple(v.z, v.y, v.x); };
+      this->SharedVoxel =
+        this->SharedVoxel && getKey(*this->SharedVoxel) < getKey(voxel) ? this->SharedVoxel : voxel;
     }
   }
-  return id < other;
+  return this->Order.ComesBefore(id, other);
 }
 
 // Links `count` voxels of a row. Returns the number of voxels that had no tetrahedron before.
@@ -80,7 +97,9 @@ std::int64_t VoxelLinker::LinkRow(std::int32_t id, const BarycentricMap& map,
   for (std::int64_t offset = 0; offset < count; ++offset)
   {
     const bool free = !IsLinked(links[offset]);
-    if (free || this->ComesBefore(id, links[offset].Tetrahedron))
+    if (free ||
+      this->TakesVoxel(
+        id, map, links[offset].Tetrahedron, glm::i64vec3(first.x + offset, first.y, first.z)))
     {
       Link(links[offset], id, start + step * static_cast<double>(offset));
     }
@@ -89,8 +108,8 @@ std::int64_t VoxelLinker::LinkRow(std::int32_t id, const BarycentricMap& map,
   return linked;
 }
 
-std::int64_t VoxelLinker::LinkRow(std::int32_t id, const BarycentricMap&, const glm::i64vec3&,
-  std::int64_t count, std::int32_t* tetrahedra) const
+std::int64_t VoxelLinker::LinkRow(std::int32_t id, const BarycentricMap& map,
+  const glm::i64vec3& first, std::int64_t count, std::int32_t* tetrahedra) const
 {
   std::int64_t linked = 0;
   for (std::int64_t offset = 0; offset < count; ++offset)
@@ -102,7 +121,9 @@ std::int64_t VoxelLinker::LinkRow(std::int32_t id, const BarycentricMap&, const 
   // This loop is rarely needed: few voxels lie in several tetrahedra.
   for (std::int64_t offset = 0; linked < count && offset < count; ++offset)
   {
-    if (tetrahedra[offset] != id && this->ComesBefore(id, tetrahedra[offset]))
+    if (tetrahedra[offset] != id &&
+      this->TakesVoxel(
+        id, map, tetrahedra[offset], glm::i64vec3(first.x + offset, first.y, first.z)))
     {
       tetrahedra[offset] = id;
     }
@@ -249,7 +270,7 @@ std::int64_t VoxelLinker::LinkTetrahedron(std::int32_t id, const Nodes& nodes, c
       for (std::int64_t x = first; x <= last; ++x, ++element)
       {
         const bool free = !IsLinked(*element);
-        if (!free && !this->ComesBefore(id, GetTetrahedron(*element)))
+        if (!free && (flat || !this->TakesVoxel(id, map, GetTetrahedron(*element), { x, y, z })))
         {
           continue;
         }
@@ -313,7 +334,7 @@ bool VoxelLinker::LinkHeldByRounding(
       near = near && weights[node] >= -RoundingDistance * glm::length(map.GetGradient(node));
     }
     const bool better = least > best ||
-      (IsLinked(element) && least == best && this->ComesBefore(id, GetTetrahedron(element)));
+      (IsLinked(element) && least == best && this->Order.ComesBefore(id, GetTetrahedron(element)));
     if (near && better)
     {
       best = least;

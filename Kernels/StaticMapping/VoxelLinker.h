@@ -5,6 +5,7 @@
 #include "BarycentricMap.h"
 #include "Extent.h"
 #include "Tetrahedron.h"
+#include "TetrahedronOrder.h"
 #include "TetrahedronRaster.h"
 #include "TetrahedronTiles.h"
 #include "VertexLink.h"
@@ -13,6 +14,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 namespace deformvolume
@@ -88,6 +91,11 @@ public:
   /// volume lies in the tetrahedron with rounded nodes.
   bool FindVoxel(std::int32_t tetrahedron, glm::i64vec3& voxel) const;
 
+  /// Returns a voxel that lies in two bodies of the mesh (TetrahedronOrder), and in the inside of a
+  /// tetrahedron of one of them. It is one of those that were linked until now, and the first of
+  /// them by z, then y, then x.
+  const std::optional<glm::i64vec3>& GetSharedVoxel() const { return this->SharedVoxel; }
+
 private:
   using Nodes = std::array<RasterPoint, 4>;
 
@@ -106,13 +114,17 @@ private:
     std::int64_t count, VertexLink* links) const;
   std::int64_t LinkRow(std::int32_t id, const BarycentricMap& map, const glm::i64vec3& first,
     std::int64_t count, std::int32_t* tetrahedra) const;
-  /// Whether a tetrahedron precedes another in the order that StaticMappingBuilder describes.
-  bool ComesBefore(std::int32_t id, std::int32_t other) const;
+  /// Whether a tetrahedron takes a voxel from another one that contains it, too. map: of the first.
+  bool TakesVoxel(std::int32_t id, const BarycentricMap& map, std::int32_t other,
+    const glm::i64vec3& voxel) const;
 
   const std::vector<glm::dvec3>& RestPoints;
   const std::vector<Tetrahedron>& Tetrahedra;
   const VoxelBox Voxels;
   const TetrahedronTiles Tiles;
+  const TetrahedronOrder Order;
+  mutable std::mutex SharedMutex;
+  mutable std::optional<glm::i64vec3> SharedVoxel;
 };
 
 } // namespace deformvolume

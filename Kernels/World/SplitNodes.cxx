@@ -5,6 +5,7 @@
 #include "FaceNeighbors.h"
 #include "IndexBounds.h"
 #include "MeshAtRest.h"
+#include "StaticMapping.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
@@ -111,6 +112,20 @@ std::string SplitNodes::Describe(const float* displacements, const Extent& voxel
     ? "The deformation mesh is split: nodes with one position at rest move more "
       "than an output voxel apart, and the volume is stretched over the gap."
     : "";
+}
+
+std::string DescribeOverlap(const StaticMapping& mapping)
+{
+  if (!mapping.SharedVoxel)
+  {
+    return "";
+  }
+  const glm::i64vec3& voxel = *mapping.SharedVoxel;
+  return "Bodies of the deformation mesh overlap at rest, for example at the voxel (" +
+    std::to_string(voxel.x) + ", " + std::to_string(voxel.y) + ", " + std::to_string(voxel.z) +
+    "). Voxels in two bodies follow the one with less volume. If the bodies move apart, the volume "
+    "on their surfaces is shown twice, or stretched. Remove the cells of one body from the "
+    "overlap.";
 }
 
 } // namespace deformvolume

@@ -15,6 +15,7 @@ namespace deformvolume
 {
 
 struct MeshAtRest;
+struct StaticMapping;
 
 /// The nodes of a mesh that share their position at rest with other nodes.
 class DEFORMVOLUME_EXPORT SplitNodes
@@ -42,6 +43,9 @@ private:
   std::uint64_t Connectivity = 0;
   bool OnFaces = false;
 };
+
+/// Returns a warning if bodies of the mesh overlap at rest; otherwise "".
+DEFORMVOLUME_EXPORT std::string DescribeOverlap(const StaticMapping& mapping);
 
 } // namespace deformvolume
 

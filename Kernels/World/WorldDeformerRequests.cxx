@@ -453,6 +453,10 @@ void WorldDeformer::Describe(const WorldRequest& request, const Extent& whole, W
         this->Splits.Describe(this->Mesh.GetNodeDisplacements(), this->Volume->PointExtent);
       warn(split.empty() ? "" : split + " Cut the volume along the split, or merge these nodes.");
     }
+    if (!isRasterized && this->Mapping.IsCurrent(mesh, this->GetMapped()))
+    {
+      warn(DescribeOverlap(this->Mapping.GetMapping()));
+    }
     const FadedLinks& links = this->Mapping.GetMapping().Faded;
     if (!links.IsEmpty() && this->Mapping.IsCurrent(mesh, this->GetMapped()))
     {

@@ -10,6 +10,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include <vtkAppendFilter.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
@@ -216,6 +217,62 @@ private:
   vtkSmartPointer<vtkUnstructuredGrid> Mesh;
   Subject Tested;
 };
+
+// Where bodies overlap at rest, points and voxels follow the same body, also if the axes of the
+// volume are rotated.
+TEST(DeformGeometryFilter, OverlappingBodies)
+{
+  const auto large = MakeTetrahedra({ { 2.3, 22.6, 2.3, 20.7, 2.3, 20.4 } }, { { 5, 5, 5 } });
+  const auto small = MakeTetrahedra({ { 10.3, 27.6, 4.3, 18.7, 4.3, 18.4 } }, { { 6, 4, 4 } });
+  const auto volume = MakeImage({ { 0, 29, 0, 23, 0, 23 } });
+  AddScalars<short>(volume, "value", [](const glm::dvec3& p) { return p.x; });
+  vtkNew<vtkImageData> turned;
+  turned->DeepCopy(volume);
+  const double direction[9] = { 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0 };
+  turned->SetDirectionMatrix(direction);
+  turned->SetOrigin(0.0, 29.0, 0.0);
+  for (const bool swap : { false, true })
+  {
+    vtkNew<vtkAppendFilter> append;
+    append->AddInputData(swap ? small : large);
+    append->AddInputData(swap ? large : small);
+    append->Update();
+    vtkUnstructuredGrid* mesh = append->GetOutput();
+    SetDisplacements(mesh, Shift(0.0, 0.0, 0.0));
+    const vtkIdType begin = swap ? 0 : large->GetNumberOfPoints();
+    const glm::dvec3 shift(0.0, 0.0, 40.0);
+    for (vtkIdType node = 0; node < small->GetNumberOfPoints(); ++node)
+    {
+      mesh->GetPointData()->GetVectors()->SetTuple(begin + node, &shift.x);
+    }
+    for (vtkImageData* image : { volume.Get(), turned.Get() })
+    {
+      Deformed moved(image, mesh);
+      vtkImageData* output = moved.Expect("overlap at rest");
+      const auto isCovered = [&](const glm::dvec3& p)
+      { return moved.IsCovered(output->FindPoint(p.x, p.y, p.z)); };
+      // Voxels of the overlap outside the cells that the boundary crosses, and their neighbors.
+      const auto inside = MakePositions(200, glm::dvec3(13.0, 7.0, 7.0), glm::dvec3(20.0), 5);
+      std::vector<glm::dvec3> voxels;
+      for (const glm::dvec3& point : inside)
+      {
+        voxels.push_back(glm::min(glm::round(point), glm::dvec3(20.0, 16.0, 16.0)));
+      }
+      Subject subject(MakePoints(voxels), mesh);
+      const std::vector<glm::dvec3> found = subject.GetPositions();
+      subject.Filter->InverseOn();
+      subject.Filter->SetInputData(MakePoints(found));
+      const std::vector<glm::dvec3> back = subject.GetPositions();
+      for (std::size_t i = 0; i < voxels.size(); ++i)
+      {
+        EXPECT_LE(glm::distance(found[i], voxels[i] + shift), 1e-9);
+        EXPECT_LE(glm::distance(back[i], voxels[i]), 1e-9);
+        EXPECT_FALSE(isCovered(voxels[i]));
+        EXPECT_TRUE(isCovered(found[i]));
+      }
+    }
+  }
+}
 
 TEST(DeformGeometryFilter, Misuse)
 {

@@ -7,6 +7,8 @@
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
@@ -53,16 +55,51 @@ bool IsInsideExactly(const Mesh& mesh, const Tetrahedron& nodes, const glm::dvec
     std::all_of(volumes, volumes + 4, [](WideInteger v) { return v <= 0; });
 }
 
-// Sorts tetrahedra by the positions of their nodes. A voxel is linked to the first tetrahedron in
-// this order that contains it.
+// Finds the volumes of the bodies: parts of the mesh without a common node. Returns the volume of
+// its body for each node. No two nodes may have one position, and no two bodies the same volume.
+std::vector<double> FindBodyVolumes(const Mesh& mesh)
+{
+  std::vector<std::size_t> bodies(mesh.Points.size());
+  std::iota(bodies.begin(), bodies.end(), 0);
+  for (bool isChanged = true; isChanged;)
+  {
+    isChanged = false;
+    for (const Tetrahedron& nodes : mesh.Tetrahedra)
+    {
+      for (int node = 0; node < 4; ++node)
+      {
+        std::size_t& body = bodies[nodes[node]];
+        const std::size_t other = bodies[nodes[(node + 1) % 4]];
+        isChanged = isChanged || other < body;
+        body = std::min(body, other);
+      }
+    }
+  }
+  std::vector<double> volumes(mesh.Points.size(), 0.0);
+  for (const Tetrahedron& nodes : mesh.Tetrahedra)
+  {
+    volumes[bodies[nodes[0]]] += std::abs(glm::determinant(glm::dmat3(
+      mesh.Points[nodes[0]] - mesh.Points[nodes[3]], mesh.Points[nodes[1]] - mesh.Points[nodes[3]],
+      mesh.Points[nodes[2]] - mesh.Points[nodes[3]])));
+  }
+  std::vector<double> all;
+  std::transform(bodies.begin(), bodies.end(), std::back_inserter(all),
+    [&](std::size_t body) { return volumes[body]; });
+  return all;
+}
+
+// Sorts tetrahedra by the volumes of their bodies, then by the positions of their nodes. A voxel is
+// linked to the first tetrahedron in this order that contains it.
 Mesh Sort(Mesh mesh)
 {
+  const std::vector<double> volumes = FindBodyVolumes(mesh);
   const auto getKey = [&](const Tetrahedron& nodes)
   {
-    std::array<double, 12> key;
+    std::array<double, 13> key;
+    key[0] = volumes[nodes[0]];
     for (int i = 0; i < 12; ++i)
     {
-      key[i] = mesh.Points[nodes[i / 3]][i % 3];
+      key[i + 1] = mesh.Points[nodes[i / 3]][i % 3];
     }
     return key;
   };
@@ -383,6 +420,60 @@ TEST(StaticMapping, Numbering)
         b.Weights == a.Weights && b.Gradients == a.Gradients);
     }
   }
+}
+
+// Of two bodies that overlap at rest, the smaller one has all voxels of the overlap, whatever their
+// numbers are. Of equal bodies it is the one with the lowest position.
+TEST(StaticMapping, Bodies)
+{
+  std::mt19937 random(9);
+  const Extent voxels{ { 0, 30, 0, 20, 0, 20 } };
+  const glm::dvec3 min(9.3, 4.3, 4.3);
+  const glm::dvec3 max(28.6, 14.7, 14.4);
+  const auto isWithin = [&](const glm::dvec3& voxel)
+  { return glm::all(glm::greaterThan(voxel, min)) && glm::all(glm::lessThan(voxel, max)); };
+  const auto check = [&](const Mesh& first, const Mesh& second, bool secondWins)
+  {
+    for (const bool swap : { false, true })
+    {
+      const Mesh both = swap ? Join(second, first) : Join(first, second);
+      const StaticMapping mapping = BuildStaticMapping(
+        voxels, UnitSpacing, both.Points, both.Tetrahedra, false, StaticMappingForm::Links);
+      const auto firstCount = static_cast<std::int32_t>((swap ? second : first).Tetrahedra.size());
+      int shared = 0;
+      for (std::int64_t i = 0; i < GetNumberOfPoints(voxels); ++i)
+      {
+        if (isWithin(GetVoxel(voxels, i)))
+        {
+          const bool isSecond = (mapping.Links[i].Tetrahedron < firstCount) == swap;
+          EXPECT_EQ(isSecond, secondWins || GetVoxel(voxels, i).x > 20);
+          ++shared;
+        }
+      }
+      EXPECT_GT(shared, 1000);
+      EXPECT_TRUE(mapping.SharedVoxel && isWithin(glm::dvec3(*mapping.SharedVoxel)));
+      const StaticMapping runs = BuildStaticMapping(
+        voxels, UnitSpacing, both.Points, both.Tetrahedra, false, StaticMappingForm::Runs);
+      EXPECT_EQ(runs.SharedVoxel, mapping.SharedVoxel);
+    }
+  };
+  const Mesh small = MakeLattice({ 6, 4, 4 }, min, max, 0.0, 0.0, random);
+  check(MakeLattice({ 5, 5, 5 }, glm::dvec3(2.3), glm::dvec3(20.6, 19.7, 19.4), 0.0, 0.0, random),
+    small, true);
+  Mesh equal = small;
+  for (glm::dvec3& point : equal.Points)
+  {
+    point.x -= 8.0;
+  }
+  check(equal, small, false);
+  // Bodies that touch do not overlap, also if voxels lie on the faces of both.
+  const Mesh touching =
+    Join(MakeLattice({ 4, 4, 4 }, glm::dvec3(0.0), glm::dvec3(12.0, 20.0, 20.0), 0.0, 0.0, random),
+      MakeLattice(
+        { 4, 5, 6 }, glm::dvec3(12.0, 0.5, 0.5), glm::dvec3(30.0, 20.0, 20.0), 0.0, 0.0, random));
+  EXPECT_FALSE(BuildStaticMapping(
+    voxels, UnitSpacing, touching.Points, touching.Tetrahedra, false, StaticMappingForm::Links)
+                 .SharedVoxel);
 }
 
 TEST(StaticMapping, Threads)
