@@ -233,6 +233,7 @@ std::string vtkDeformVolumeFilter::GetSummary()
        << (this->ResamplerInUse == MESH_RASTERIZATION ? "mesh rasterization" : "exact") << "\n"
        << "Covered voxels: " << count(this->NumberOfCoveredVoxels) << "\n"
        << "Inverted tetrahedra: " << count(this->NumberOfInvertedTetrahedra) << "\n"
+       << "Hidden voxels: " << count(this->NumberOfHiddenVoxels) << "\n"
        << "Flat tetrahedra: " << count(this->NumberOfFlatTetrahedra) << "\n"
        << "Bricks resampled: " << count(report.NumberOfResampledBricks) << "\n"
        << "Bricks of the volume: " << count(report.NumberOfBricks) << "\n"
@@ -339,6 +340,7 @@ void vtkDeformVolumeFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Device: \"" << this->Device << "\"\n";
   os << indent << "MemoryLimit: " << this->MemoryLimit << "\n";
   os << indent << "NumberOfInvertedTetrahedra: " << this->NumberOfInvertedTetrahedra << "\n";
+  os << indent << "NumberOfHiddenVoxels: " << this->NumberOfHiddenVoxels << "\n";
   os << indent << "NumberOfFlatTetrahedra: " << this->NumberOfFlatTetrahedra << "\n";
   os << indent << "NumberOfCoveredVoxels: " << this->NumberOfCoveredVoxels << "\n";
   os << indent << "ChangedExtent:";

@@ -354,11 +354,14 @@ public:
    * tetrahedra that the deformation turned inside out (of the sampling mesh, of the deformation
    * mesh at its boundary and with MESH_RASTERIZATION, or of the grid of an inverse field), where
    * parts of the volume are seen twice; tetrahedra of the deformation mesh without volume at rest,
-   * which are skipped.
+   * which are skipped; and voxels of tissue that is missing in the output because other tissue lies
+   * at the same place, where the volume folds or where the sides of a cut overlap. The last number
+   * is 0 with an inverse field and after an incremental update, which do not count them.
    */
   vtkGetMacro(NumberOfCoveredVoxels, vtkIdType);
   vtkGetMacro(NumberOfInvertedTetrahedra, vtkIdType);
   vtkGetMacro(NumberOfFlatTetrahedra, vtkIdType);
+  vtkGetMacro(NumberOfHiddenVoxels, vtkIdType);
   ///@}
 
   ///@{
@@ -540,6 +543,7 @@ private:
   vtkTypeInt64 MemoryLimit = 0;
 
   vtkIdType NumberOfInvertedTetrahedra = 0;
+  vtkIdType NumberOfHiddenVoxels = 0;
   vtkIdType NumberOfFlatTetrahedra = 0;
   vtkIdType NumberOfCoveredVoxels = 0;
   int ChangedExtent[6] = { 0, -1, 0, -1, 0, -1 };

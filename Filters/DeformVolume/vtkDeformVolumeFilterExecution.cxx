@@ -103,6 +103,7 @@ void vtkDeformVolumeFilter::vtkInternals::ResetResults()
   this->Report = {};
   this->StaticMappingTime = 0.0;
   this->Self->NumberOfInvertedTetrahedra = 0;
+  this->Self->NumberOfHiddenVoxels = 0;
   this->Self->NumberOfFlatTetrahedra = 0;
   this->Self->NumberOfCoveredVoxels = 0;
   const Extent& nothing = deformvolume::EmptyExtent;

@@ -273,6 +273,7 @@ void vtkDeformVolumeFilter::vtkInternals::TakeReport(
     : this->State->Deformation.IsField() ? 0
                                          : this->State->Mapping.GetNumberOfFlatTetrahedra();
   this->Self->NumberOfCoveredVoxels = report.NumberOfCoveredVoxels;
+  this->Self->NumberOfHiddenVoxels = report.NumberOfHiddenSamples;
   std::copy(report.ChangedExtent.begin(), report.ChangedExtent.end(), this->Self->ChangedExtent);
   if (report.NumberOfOverstretchedCells > 0)
   {

@@ -233,6 +233,7 @@ void vtkDeformVolumeFilter::vtkInternals::AddUpCounts(const Ranks& ranks)
   };
   addUp(this->Self->NumberOfInvertedTetrahedra);
   addUp(this->Self->NumberOfCoveredVoxels);
+  addUp(this->Self->NumberOfHiddenVoxels);
   addUp(this->Report.NumberOfBricks);
   addUp(this->Report.NumberOfResampledBricks);
   // Each rank with work has counted the flat tetrahedra of the whole mesh.
