@@ -28,6 +28,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <deque>
 #include <iomanip>
 #include <map>
 #include <set>
@@ -203,6 +205,19 @@ void AddFixedNodes(const Options& options, const Volume& volume, vtkUnstructured
   }
 }
 
+// Warns if pulls move the whole body: it follows them without a strain.
+void WarnOfLooseBody(const Options& options, Messages& messages)
+{
+  const bool areEqual = std::all_of(options.Pulls.begin(), options.Pulls.end(),
+    [&](const Pull& pull) { return pull.Displacement == options.Pulls.front().Displacement; });
+  if (options.Fixations.empty() && !options.Pulls.empty() && areEqual &&
+    options.Gravity == std::array<double, 3>())
+  {
+    messages.Warn("Nothing holds the body, so --pull moves all of it without a deformation. Hold a "
+                  "part of it with --fix, or with a --pull whose displacement is 0.");
+  }
+}
+
 // Without a radius, a pull moves the nearest node, which may be far from its position.
 void WarnOfFarPulls(const Options& options, vtkUnstructuredGrid* mesh, Messages& messages)
 {
@@ -251,9 +266,44 @@ void WarnOfUnusedMaterials(const Options& options, const Volume& volume, Message
   }
 }
 
-// Gives the tetrahedra the materials of their voxels, by --material.
-void AddMaterials(
-  const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh, Messages& messages)
+// Gives negative values of voxels the value of the nearest voxel that has another one. The distance
+// is the number of steps between voxels.
+void FillFromNearest(vtkImageData* volume, std::vector<int>& values)
+{
+  int dimensions[3];
+  volume->GetDimensions(dimensions);
+  const vtkIdType steps[3] = { 1, dimensions[0], vtkIdType{ dimensions[0] } * dimensions[1] };
+  std::deque<vtkIdType> front;
+  for (std::size_t voxel = 0; voxel < values.size(); ++voxel)
+  {
+    if (values[voxel] >= 0)
+    {
+      front.push_back(static_cast<vtkIdType>(voxel));
+    }
+  }
+  for (; !front.empty(); front.pop_front())
+  {
+    const vtkIdType voxel = front.front();
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const vtkIdType index = voxel / steps[axis] % dimensions[axis];
+      for (const int side : { -1, 1 })
+      {
+        const auto neighbor = static_cast<std::size_t>(voxel + side * steps[axis]);
+        if (index + side >= 0 && index + side < dimensions[axis] && values[neighbor] < 0)
+        {
+          values[neighbor] = values[static_cast<std::size_t>(voxel)];
+          front.push_back(static_cast<vtkIdType>(neighbor));
+        }
+      }
+    }
+  }
+}
+
+// Gives the tetrahedra the materials of their voxels, by --material. A mesh of --tetgen extends
+// beyond the body. There, air without a material counts as the nearest voxel of the body.
+void AddMaterials(const Options& options, const Volume& volume, vtkUnstructuredGrid* mesh,
+  const Deformation& deformation, Messages& messages)
 {
   if (options.Materials.empty())
   {
@@ -275,20 +325,32 @@ void AddMaterials(
   }
   vtkDataArray* values = volume.Image->GetPointData()->GetScalars();
   vtkDataArray* labels = volume.GetLabels();
-  mesh->ShallowCopy(AddMeans("materials", filter, volume.Image, mesh, options, messages,
-    [&](vtkIdType voxel)
+  const auto isOfBody = [&](double value)
+  {
+    return !options.TetGen ||
+      (deformation.Isovalue ? value >= *deformation.Isovalue : value != 0.0);
+  };
+  const auto find = [&](vtkIdType voxel)
+  {
+    for (int i = 0; i < index; ++i)
     {
-      for (int i = 0; i < index; ++i)
+      const MaterialOfValues& material = options.Materials[i];
+      const double value = (material.IsOfLabel ? labels : values)->GetComponent(voxel, 0);
+      if (value >= material.Minimum && value < material.Maximum)
       {
-        const MaterialOfValues& material = options.Materials[i];
-        const double value = (material.IsOfLabel ? labels : values)->GetComponent(voxel, 0);
-        if (value >= material.Minimum && value < material.Maximum)
-        {
-          return i;
-        }
+        return i;
       }
-      return defaultMaterial;
-    }));
+    }
+    return isOfBody(values->GetComponent(voxel, 0)) ? defaultMaterial : -1;
+  };
+  std::vector<int> indices(static_cast<std::size_t>(values->GetNumberOfTuples()));
+  for (std::size_t voxel = 0; voxel < indices.size(); ++voxel)
+  {
+    indices[voxel] = find(static_cast<vtkIdType>(voxel));
+  }
+  FillFromNearest(volume.Image, indices);
+  mesh->ShallowCopy(AddMeans("materials", filter, volume.Image, mesh, options, messages,
+    [&](vtkIdType voxel) { return indices[static_cast<std::size_t>(voxel)]; }));
 }
 
 // Returns one surface of all sheets of --cut.
@@ -373,8 +435,9 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
   Messages& messages, Deformation& deformation, const FrameTaker& takeFrame)
 {
   AddFixedNodes(options, volume, mesh, messages, deformation);
-  AddMaterials(options, volume, mesh, messages);
+  AddMaterials(options, volume, mesh, deformation, messages);
   WarnOfFarPulls(options, mesh, messages);
+  WarnOfLooseBody(options, messages);
   // update(part): moves the handles by this fraction of their displacements, or simulates this
   // fraction of --duration.
   const auto run = [&](vtkElasticDeformation* model, const auto& update)

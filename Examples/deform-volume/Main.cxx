@@ -140,6 +140,10 @@ void CheckArrays(const Options& options, vtkPointData* arrays)
   {
     refuse("--jacobian", "Jacobian");
   }
+  if (!options.FoldCounts.empty())
+  {
+    refuse("--fold-count", "FoldCount");
+  }
   if (!options.InverseFields.empty())
   {
     refuse("--inverse-field", "RestPosition");
@@ -312,8 +316,8 @@ vtkSmartPointer<vtkImageData> ClearOutside(vtkImageData* result)
 }
 
 // A few tetrahedra that are inside out are normal, for example at the handles of ChainMail.
-void WarnOfFolds(
-  const Options& options, vtkIdType voxels, vtkDeformVolumeFilter* filter, Messages& messages)
+void WarnOfFolds(const Options& options, const LabelVolume& labels, vtkIdType voxels,
+  vtkDeformVolumeFilter* filter, Messages& messages)
 {
   constexpr vtkIdType few = 1000;
   const vtkIdType inverted = filter->GetNumberOfInvertedTetrahedra();
@@ -328,6 +332,15 @@ void WarnOfFolds(
       " of the tetrahedra between its voxels inside out. Where parts of the result overlap, only "
       "one of them is shown. Check the displacements, and whether they are in the unit of the "
       "volume.");
+  }
+  else if (const vtkIdType hidden = filter->GetNumberOfHiddenVoxels(); hidden > voxels / few)
+  {
+    const std::string lost = labels.DescribeLost(filter->GetOutput());
+    messages.Warn("Parts of the result overlap, as where a part that is cut out moves into other "
+                  "tissue. Only one of them is shown, and " +
+      std::to_string(hidden) + " voxels of the others are hidden" +
+      (lost.empty() ? "" : ", among them all with the labels " + lost) +
+      ". --fold-count shows where.");
   }
 }
 
@@ -426,7 +439,7 @@ void DeformVolume(const Options& options, Messages& messages)
   const Stopwatch deforming;
   deform(deformation);
   CheckCoverage(filter->GetOutput());
-  WarnOfFolds(options, volume.Image->GetNumberOfPoints(), filter, messages);
+  WarnOfFolds(options, labels, volume.Image->GetNumberOfPoints(), filter, messages);
   timings.Add("deform", deforming.GetSeconds());
 
   Volume result = volume;
@@ -454,8 +467,8 @@ void DeformVolume(const Options& options, Messages& messages)
   {
     WriteVolume(result, output, messages, !options.Quiet);
   }
-  if (!options.Outputs.empty() || !options.Jacobians.empty() || !options.InverseFields.empty() ||
-    !options.LabelOutputs.empty())
+  if (!options.Outputs.empty() || !options.Jacobians.empty() || !options.FoldCounts.empty() ||
+    !options.InverseFields.empty() || !options.LabelOutputs.empty())
   {
     timings.Add("write volume", writing.GetSeconds());
   }

@@ -328,6 +328,7 @@ void CheckResampler(const Options& options, bool isForwardField)
       : options.SmoothCut                                      ? "--smooth-cut"
       : options.KeepDistance                                   ? "--keep"
       : !options.Jacobians.empty()                             ? "--jacobian"
+      : !options.FoldCounts.empty()                            ? "--fold-count"
       : !options.DensityArrays.empty()                         ? "--density-array"
                                                                : "";
     if (!other.empty())

@@ -231,7 +231,8 @@ void AddElasticModel(CLI::App& program, Options& options)
     "values of a TISSUE. VOXELS is MINIMUM:MAXIMUM for values of at least MINIMUM and less than "
     "MAXIMUM, or label:N for a label, as in --fix. Each tetrahedron gets the mean of its voxels. "
     "If several apply to a voxel, the first one is used. Other voxels get the TISSUE that is "
-    "given without VOXELS, or else --young, --poisson and --density. "
+    "given without VOXELS, or else --young, --poisson and --density; with --tetgen, those outside "
+    "the body have the material of the nearest voxel of the body. "
     "Tissues: " +
       GetTissues() + ". May be given several times");
   addNumber("--young", options.YoungModulus, "Young modulus, in Pa");
@@ -277,7 +278,7 @@ void AddDeformation(CLI::App& program, Options& options)
     "then at rest");
   group.Add("--rest", options.Rest, "FILE",
     "Mesh at rest, with the same cells as --mesh. The points of --mesh are then the deformed "
-    "positions");
+    "positions. Of a time series, the first time step is read");
   group.AddChoice("--mesh-space", options.MeshSpace, "SPACE", { "lps", "ras" },
     "World coordinates of files of --mesh, --rest, --cut and --points (.vtp, .vtu, .stl, .ply) "
     "that do not state them (files of 3D Slicer do): lps (x to the left, y to the back, z to the "
@@ -457,6 +458,12 @@ void AddOutput(CLI::App& program, Options& options)
       FormatsOfOneArray +
       ". It is negative where the deformation turns tissue inside out, and 0 outside the "
       "deformed volume. May be given several times");
+  group.AddList("--fold-count", options.FoldCounts, "FILE",
+    std::string("How many parts of the volume lie at each voxel of the result, of which one is "
+                "shown: .vti, ") +
+      FormatsOfOneArray +
+      ". 1 where nothing overlaps, 0 outside the deformed volume. Not for an inverse field. May be "
+      "given several times");
   group.AddList("--inverse-field", options.InverseFields, "FILE",
     std::string(
       "The displacement field from each voxel of the result to the point of the volume that is "
@@ -509,6 +516,7 @@ std::vector<NamedFile> Options::GetOutputs() const
   add("--output", this->Outputs);
   add("--label-output", this->LabelOutputs);
   add("--jacobian", this->Jacobians);
+  add("--fold-count", this->FoldCounts);
   add("--inverse-field", this->InverseFields);
   add("--points-output", this->PointsOutputs);
   add("--write-mesh", { this->MeshOutput });

@@ -86,6 +86,7 @@ struct Options
   std::vector<std::string> Outputs;
   std::vector<std::string> LabelOutputs;
   std::vector<std::string> Jacobians;
+  std::vector<std::string> FoldCounts;
   std::vector<std::string> InverseFields;
   /// One for each file of Points.
   std::vector<std::string> PointsOutputs;

@@ -38,6 +38,8 @@ from vtkmodules.vtkCommonDataModel import (
     VTK_TETRA,
     VTK_VERTEX,
     vtkImageData,
+    vtkPartitionedDataSet,
+    vtkPartitionedDataSetCollection,
     vtkPolyData,
     vtkRectilinearGrid,
     vtkTable,
@@ -53,7 +55,11 @@ from vtkmodules.vtkIOLegacy import (
     vtkTableWriter,
     vtkUnstructuredGridWriter,
 )
-from vtkmodules.vtkIOParallelXML import vtkXMLPUnstructuredGridWriter
+from vtkmodules.vtkIOParallelXML import (
+    vtkXMLPartitionedDataSetCollectionWriter,
+    vtkXMLPartitionedDataSetWriter,
+    vtkXMLPUnstructuredGridWriter,
+)
 from vtkmodules.vtkIOPLY import vtkPLYWriter
 from vtkmodules.vtkIOXML import (
     vtkXMLImageDataWriter,
@@ -110,6 +116,13 @@ half = len(cells) // 2
 parts = [make_unstructured(places, moves, some) for some in (cells[:half], cells[half:])]
 write(vtkXMLMultiBlockDataWriter(), make_blocks(("left", parts[0]), ("right", parts[1])),
       path("mesh.vtm"), **XML)
+collection = vtkPartitionedDataSetCollection()
+both = vtkPartitionedDataSet()
+for number, part in enumerate(parts):
+    collection.SetPartition(number, 0, part)
+    both.SetPartition(number, part)
+write(vtkXMLPartitionedDataSetCollectionWriter(), collection, path("mesh.vtpc"), **XML)
+write(vtkXMLPartitionedDataSetWriter(), both, path("mesh.vtpd"), **XML)
 for number, part in enumerate(parts):
     write(vtkXMLUnstructuredGridWriter(), part, path(f"part{number}.vtu"), **XML)
 write(vtkXMLUnstructuredGridWriter(), make_unstructured(places, 0.5 * moves), path("before.vtu"),
@@ -348,8 +361,8 @@ def check_formats_of_meshes():
     exactly."""
     expected = deform(*as_mesh("mesh.vtu"))
     assert 1000 < expected[1].sum() < expected[1].size - 1000, (expected[1].sum(), expected[1].size - 1000)
-    for name in ("binary.vtk", "old.vtk", "mesh.pvtu", "mesh.vtm", "one.pvd", "parts.pvd", "mesh.e",
-                 "mesh.ex2", "mesh.vtkhdf"):
+    for name in ("binary.vtk", "old.vtk", "mesh.pvtu", "mesh.vtm", "mesh.vtpc", "mesh.vtpd", "one.pvd", "parts.pvd",
+                 "mesh.e", "mesh.ex2", "mesh.vtkhdf"):
         check_same(expected, *as_mesh(name))
     hexahedra = deform(*as_mesh("hexahedra.vtu"))
     for name in ("mesh.vts", "structured.vtk", "mesh.vtr", "rectilinear.vtk"):
@@ -359,6 +372,12 @@ def check_formats_of_meshes():
     # Of a series the last step is read, and a warning states it.
     check_same(expected, *as_mesh("series.pvd"),
                expected_warnings=["series.pvd holds 3 time steps; the last one, of the time 2.5"])
+    # The mesh at rest is the first step of a series.
+    write(vtkXMLUnstructuredGridWriter(), make_unstructured(places + moves, moves), path("second.vtu"), **XML)
+    write_collection(path("moving.pvd"), [(0.0, "mesh.vtu"), (1.0, "second.vtu")])
+    check_same(deform("--mesh", path("second.vtu"), "--rest", path("mesh.vtu")), "--mesh", path("moving.pvd"), "--rest",
+               path("moving.pvd"), expected_warnings=["moving.pvd holds 2 time steps; the last one, of the time 1",
+                                                      "moving.pvd holds 2 time steps; the first one, of the time 0"])
     check_same(expected, *as_mesh("series.exo"),
                expected_warnings=["series.exo holds 3 time steps; the last one, of the time 1,"])
     # A pair of meshes of several formats.

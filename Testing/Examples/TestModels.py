@@ -240,6 +240,10 @@ def check_size_of_body():
     assert abs(float(found.group(1)) * 1000 - volume_of_mesh) < 1e-3 * volume_of_mesh, (output, volume_of_mesh)
     # A tenth of an edge and half a voxel on each side.
     assert 0.9 * body < volume_of_mesh < 14 * 14 * 42 and errors == "", (volume_of_mesh, errors)
+    # Voxels outside the body do not count, although they are in tetrahedra.
+    call(program, *arguments, "--edge-length", "5", "--material", "50:1000=500,0.4")
+    moduli = vtk_to_numpy(read_vtu("bar.vtu").GetCellData().GetArray("YoungModulus"))
+    assert (moduli == 500).all(), moduli
     coarse = (*arguments, "--edge-length", "12")
     Messages.warns(program, "times the volume of the body", *coarse)
     _, errors = call(program, *coarse, "--material", "-1:50=100,0.3,1")
@@ -316,6 +320,8 @@ def check_results_without_use():
     Messages.warns(program, "fixes all nodes", *arguments, "--fix", "below:1000")
     far = ("--fix", "below:10", "--pull", f"{middle[0]},{middle[1]},{bounds[5] + 20},0,0,1")
     Messages.warns(program, "is 20 mm outside the mesh, and moves the nearest node", *arguments, *far)
+    Messages.warns(program, "Nothing holds the body", path("in.vti"), "--model", "fem", *lattice, *pull, "-o",
+                   path("loose.vti"))
     Messages.warns(program, ["springs still move by up to", "mm/s"], path("in.vti"), "--model", "mass-spring",
                    *lattice, *fix, "--gravity", "0,0,-1", "--duration", "0.1", "-o", path("moving.vti"))
     Messages.warns(program, ["3000:4000 of --material", "0 to 849"], *arguments, *fix, "--material",

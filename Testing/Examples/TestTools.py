@@ -141,3 +141,22 @@ assert "it contains no part of the volume" in errors, errors
 # A mesh deforms a volume that has been cut.
 call(program, path("in.vti"), *cut, "--lattice", "9,9,9", "--push", "9,20,25,3,0,0,15", "-o",
      path("pushed.vti"))
+
+# A part that is cut out moves into other tissue: voxels are hidden, among them all with the label 5.
+places = numpy.array([volume.GetPoint(voxel) for voxel in range(volume.GetNumberOfPoints())])
+limit = middle[0] + 0.3
+moving, labels = vtkImageData(), vtkImageData()
+for image in (moving, labels):
+    image.CopyStructure(volume)
+moving.GetPointData().SetVectors(to_vtk("Displacement", (places[:, :1] > limit) * [[-6.0, 0.0, 0.0]]))
+near = (places[:, 0] > limit) & (places[:, 0] < limit + 3)
+labels.GetPointData().SetScalars(to_vtk("Labels", numpy.where(near, 5, 1).astype(numpy.int32)))
+write_vti(moving, path("moving.vti"))
+write_vti(labels, path("labels.vti"))
+_, errors = call(program, path("in.vti"), *cut, "--field", path("moving.vti"), "--label-volume", path("labels.vti"),
+                 "--bounds", "volume", "--label-output", path("moved.vti"), "--fold-count", path("count.vti"))
+assert "Parts of the result overlap" in errors and "all with the labels 5. --fold-count shows where" in errors, errors
+hidden = int(errors.split(" voxels of the others")[0].split()[-1])
+counts = get_values(read_vti(path("count.vti")))
+assert counts.max() == 2 and counts.min() == 0 and (counts == 2).sum() == hidden > 2000, (counts.max(), hidden)
+assert not (get_values(read_vti(path("moved.vti"))) == 5).any()

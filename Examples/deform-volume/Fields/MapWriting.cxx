@@ -26,14 +26,21 @@ vtkSmartPointer<vtkImageData> MakeImage(vtkImageData* grid, vtkDataArray* values
   return image;
 }
 
-void WriteJacobian(const Options& options, const Volume& deformed, Messages& messages)
+// Writes an array of the result, and removes it from `remaining`.
+void WriteMap(const char* name, const std::vector<std::string>& paths, const Options& options,
+  const Volume& deformed, vtkImageData* remaining, Messages& messages)
 {
+  if (paths.empty())
+  {
+    return; // an array of this name is one of the volume
+  }
   Volume written = deformed;
-  written.Image = MakeImage(deformed.Image, CopyCovered(deformed.Image, "Jacobian"));
-  for (const std::string& path : options.Jacobians)
+  written.Image = MakeImage(deformed.Image, CopyCovered(deformed.Image, name));
+  for (const std::string& path : paths)
   {
     WriteVolume(written, path, messages, !options.Quiet);
   }
+  remaining->GetPointData()->RemoveArray(name);
 }
 
 // Returns the vectors from the voxels to their rest positions; 0 for voxels that are not covered.
@@ -90,6 +97,7 @@ void WriteInverseField(const Options& options, const Volume& deformed, Messages&
 void AskForMaps(const Options& options, vtkDeformVolumeFilter* filter)
 {
   filter->SetGenerateJacobian(!options.Jacobians.empty());
+  filter->SetGenerateFoldCount(!options.FoldCounts.empty());
   filter->SetGenerateRestPositions(!options.InverseFields.empty());
 }
 
@@ -97,12 +105,8 @@ void WriteMaps(const Options& options, Volume& deformed, Messages& messages)
 {
   vtkNew<vtkImageData> remaining;
   remaining->ShallowCopy(deformed.Image);
-  // Remove only maps that were generated: the volume may have an array of the same name.
-  if (!options.Jacobians.empty())
-  {
-    WriteJacobian(options, deformed, messages);
-    remaining->GetPointData()->RemoveArray("Jacobian");
-  }
+  WriteMap("Jacobian", options.Jacobians, options, deformed, remaining, messages);
+  WriteMap("FoldCount", options.FoldCounts, options, deformed, remaining, messages);
   if (!options.InverseFields.empty())
   {
     WriteInverseField(options, deformed, messages);

@@ -235,11 +235,12 @@ Deformation MakeDeformation(const Options& options, const Volume& volume,
   Deformation deformation;
   if (!options.Mesh.empty())
   {
-    deformation.Data = ReadMesh(options.Mesh, options.Displacement, options, volume, messages);
+    deformation.Data =
+      ReadMesh(options.Mesh, options.Displacement, false, options, volume, messages);
     deformation.Displacement = options.Displacement;
     if (!options.Rest.empty())
     {
-      deformation.Rest = ReadMesh(options.Rest, "", options, volume, messages);
+      deformation.Rest = ReadMesh(options.Rest, "", true, options, volume, messages);
     }
     CheckMeshOptions(options, deformation);
   }

@@ -26,6 +26,8 @@
 #include <vtkVersionMacros.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLGenericDataObjectReader.h>
+#include <vtkXMLPartitionedDataSetCollectionReader.h>
+#include <vtkXMLPartitionedDataSetReader.h>
 #include <vtkXMLUtilities.h>
 #include <vtksys/SystemTools.hxx>
 
@@ -54,6 +56,8 @@ struct Source
   bool ShowProgress;
   /// Whether displacements will be added to the points.
   bool PointsAreAtRest = false;
+  /// Whether the first time step is read instead of the last one.
+  bool IsFirst = false;
 };
 
 void CheckReading(const Source& source, const std::string& format)
@@ -88,9 +92,10 @@ private:
   Messages& Log;
 };
 
-std::string GetTimeText(std::size_t steps, double last)
+void WarnOfSteps(const Source& source, std::size_t steps, double time)
 {
-  return MakeText(" holds ", steps, " time steps; the last one, of the time ", last, ", is read.");
+  source.Log.Warn(MakeText(source.Path, " holds ", steps, " time steps; the ",
+    source.IsFirst ? "first" : "last", " one, of the time ", time, ", is read."));
 }
 
 void Update(vtkAlgorithm* reader, const Source& source, const std::string& format)
@@ -103,9 +108,10 @@ void Update(vtkAlgorithm* reader, const Source& source, const std::string& forma
   const int steps = information->Length(vtkStreamingDemandDrivenPipeline::TIME_STEPS());
   if (steps > 1)
   {
-    const double last = information->Get(vtkStreamingDemandDrivenPipeline::TIME_STEPS(), steps - 1);
-    source.Log.Warn(source.Path + GetTimeText(steps, last));
-    reader->UpdateTimeStep(last);
+    const double time = information->Get(
+      vtkStreamingDemandDrivenPipeline::TIME_STEPS(), source.IsFirst ? 0 : steps - 1);
+    WarnOfSteps(source, steps, time);
+    reader->UpdateTimeStep(time);
   }
   else
   {
@@ -125,8 +131,20 @@ vtkSmartPointer<vtkDataObject> ReadBy(
 
 vtkSmartPointer<vtkDataObject> ReadXML(const Source& source)
 {
+  const char* const format = "XML file of VTK";
+  // Before VTK 9.2 the generic reader does not know these types.
+  if (HasSuffix(source.Path, { ".vtpc" }))
+  {
+    vtkNew<vtkXMLPartitionedDataSetCollectionReader> reader;
+    return ReadBy(reader.Get(), source, format);
+  }
+  if (HasSuffix(source.Path, { ".vtpd" }))
+  {
+    vtkNew<vtkXMLPartitionedDataSetReader> reader;
+    return ReadBy(reader.Get(), source, format);
+  }
   vtkNew<vtkXMLGenericDataObjectReader> reader;
-  return ReadBy(reader.Get(), source, "XML file of VTK");
+  return ReadBy(reader.Get(), source, format);
 }
 
 vtkSmartPointer<vtkDataObject> ReadLegacy(const Source& source)
@@ -288,10 +306,10 @@ std::map<double, std::vector<std::string>> FindFiles(const Source& source)
 vtkSmartPointer<vtkDataObject> ReadCollection(const Source& source)
 {
   const std::map<double, std::vector<std::string>> files = FindFiles(source);
-  const auto& [time, parts] = *files.rbegin();
+  const auto& [time, parts] = source.IsFirst ? *files.begin() : *files.rbegin();
   if (files.size() > 1)
   {
-    source.Log.Warn(source.Path + GetTimeText(files.size(), time));
+    WarnOfSteps(source, files.size(), time);
   }
   vtkNew<vtkMultiBlockDataSet> blocks;
   for (const std::string& part : parts)
@@ -302,8 +320,8 @@ vtkSmartPointer<vtkDataObject> ReadCollection(const Source& source)
     }
     const unsigned int block = blocks->GetNumberOfBlocks();
     blocks->SetBlock(block,
-      ReadMeshFile(
-        { part, source.Label, source.Log, source.ShowProgress, source.PointsAreAtRest }));
+      ReadMeshFile({ part, source.Label, source.Log, source.ShowProgress, source.PointsAreAtRest,
+        source.IsFirst }));
     blocks->GetMetaData(block)->Set(
       vtkCompositeDataSet::NAME(), vtksys::SystemTools::GetFilenameName(part).c_str());
   }
@@ -402,10 +420,10 @@ vtkSmartPointer<vtkDataObject> ReadSheetFile(const Source& source)
 }
 
 vtkSmartPointer<vtkDataObject> ReadMesh(const std::string& path, const std::string& displacement,
-  const Options& options, const Volume& volume, Messages& messages)
+  bool isRest, const Options& options, const Volume& volume, Messages& messages)
 {
   const vtkSmartPointer<vtkDataObject> mesh = ReadMeshFile({ path, "reading mesh", messages,
-    !options.Quiet, !displacement.empty() && !options.PointsAreDeformed });
+    !options.Quiet, !displacement.empty() && !options.PointsAreDeformed, isRest });
   CheckMesh(mesh, displacement, path);
   ConvertToWorldOfVolume(mesh, { displacement }, options.MeshSpace, path, volume.Axes, messages);
   return mesh;

@@ -22,6 +22,7 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
+#include <set>
 
 namespace
 {
@@ -222,6 +223,32 @@ vtkSmartPointer<vtkImageData> LabelVolume::TakeFrom(vtkSmartPointer<vtkImageData
   labels->GetPointData()->SetActiveScalars(this->ActiveName.c_str());
   deformed = others;
   return labels;
+}
+
+std::string LabelVolume::DescribeLost(vtkImageData* deformed) const
+{
+  std::set<double> lost;
+  std::string text;
+  for (std::size_t i = 0; i < this->Arrays.size(); ++i)
+  {
+    vtkDataArray* values = deformed->GetPointData()->GetArray(GetInnerName(i).c_str());
+    if (!values)
+    {
+      return {}; // the labels are not deformed
+    }
+    const auto before = vtk::DataArrayValueRange(this->Arrays[i].Values.Get());
+    lost.insert(before.begin(), before.end());
+    for (const double value : vtk::DataArrayValueRange(values))
+    {
+      lost.erase(value);
+    }
+  }
+  lost.erase(0.0);
+  for (const double label : lost)
+  {
+    text += (text.empty() ? "" : ", ") + MakeText(label);
+  }
+  return text;
 }
 
 std::string LabelVolume::Describe() const

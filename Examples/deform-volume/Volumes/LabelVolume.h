@@ -34,6 +34,9 @@ public:
   /// the deformed volume are 0.
   vtkSmartPointer<vtkImageData> TakeFrom(vtkSmartPointer<vtkImageData>& deformed) const;
 
+  /// Returns the labels that no voxel of a deformed volume has, such as "3, 7"; "": none.
+  std::string DescribeLost(vtkImageData* deformed) const;
+
   /// The names and types of the arrays of labels.
   std::string Describe() const;
 
