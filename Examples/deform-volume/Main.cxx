@@ -162,6 +162,11 @@ void SetUp(vtkDeformVolumeFilter* filter, const Options& options, vtkImageData* 
       ? vtkDeformVolumeFilter::VOLUME_BOUNDS
       : vtkDeformVolumeFilter::DEFORMED_BOUNDS);
   filter->SetPadding(options.Padding);
+  if (options.Spacing)
+  {
+    filter->SetOutputSpacingModeToCustomSpacing();
+    filter->SetCustomSpacing(options.Spacing->data());
+  }
   filter->SetBackgroundValue(options.Background.value_or(FindBackground(options, volume)));
   const std::map<std::string, int> resamplers{ { "automatic", vtkDeformVolumeFilter::AUTOMATIC },
     { "exact", vtkDeformVolumeFilter::EXACT },

@@ -211,6 +211,19 @@ std::array<double, 3> ParseGravity(const std::string& text)
   return ParseNumbers<double, 3>("--gravity", text, "three numbers X,Y,Z with commas between them");
 }
 
+std::array<double, 3> ParseSpacing(const std::string& text)
+{
+  const auto spacing = ParseNumbers<double, 3>("--spacing", text, "three numbers X,Y,Z");
+  for (const double distance : spacing)
+  {
+    if (!(distance > 0.0))
+    {
+      throw UsageError("--spacing " + text + ": the three numbers must be greater than 0");
+    }
+  }
+  return spacing;
+}
+
 std::array<double, 3> ParseView(const std::string& text)
 {
   const auto view = ParseNumbers<double, 3>("--view", text, "three numbers X,Y,Z");

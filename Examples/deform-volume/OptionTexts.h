@@ -48,6 +48,7 @@ MaterialOfValues ParseMaterial(const std::string& text);
 TransformFile ParseTransform(const std::string& text);
 std::array<int, 3> ParseLattice(const std::string& text);
 std::array<double, 3> ParseGravity(const std::string& text);
+std::array<double, 3> ParseSpacing(const std::string& text);
 std::array<double, 3> ParseView(const std::string& text);
 ///@}
 

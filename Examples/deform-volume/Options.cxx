@@ -382,7 +382,8 @@ void AddDependencies(CLI::App& program)
   {
     program.get_option(option)->excludes(program.get_option("--file-coordinates"));
   }
-  for (const char* option : { "--bounds", "--padding", "--file-coordinates" })
+  program.get_option("--transform")->excludes(program.get_option("--spacing"));
+  for (const char* option : { "--bounds", "--padding", "--spacing", "--file-coordinates" })
   {
     program.get_option("--reference")->excludes(program.get_option(option));
   }
@@ -408,6 +409,9 @@ void AddResampling(CLI::App& program, Options& options)
     "origin. Its values are not used. With --transform, give the fixed image");
   group.AddChoice("--bounds", options.Bounds, "MODE", { "deformed", "volume" },
     "Bounds of the result: those of the deformed volume, or those of the volume at rest");
+  group.Add("--spacing", options.Spacing, ParseSpacing, "X,Y,Z",
+    "Distances between the voxels of the result along its axes, in world units [those of the "
+    "volume]. Smaller ones show thin layers that the deformation makes");
   group
     .Add("--padding", options.Padding, "VOXELS",
       "Width of a border on each side of the result, in voxels")

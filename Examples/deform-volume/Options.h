@@ -74,6 +74,7 @@ struct Options
   std::string Outside = "discard";
   std::optional<double> KeepDistance;
   std::string Bounds = "deformed";
+  std::optional<std::array<double, 3>> Spacing;
   int Padding = 0;
   std::optional<double> Background;
   std::vector<std::string> CategoricalArrays;

@@ -93,6 +93,10 @@ fails(2, "--edge-length", path("in.vti"), *tetgen, "--edge-length", "-1", "-o", 
 fails(2, "--radius-edge-ratio", path("in.vti"), *tetgen, "--radius-edge-ratio", "-1", "-o",
       path("o.vti"))
 fails(2, "--padding", path("in.vti"), *lattice, *push, "--padding", "-1", "-o", path("o.vti"))
+for text in ("1,2", "1,0,1", "1,1,-2"):
+    fails(2, f"--spacing {text}: ", path("in.vti"), *lattice, *push, "--spacing", text, "-o", path("o.vti"))
+call(program, path("in.vti"), *lattice, *push, "--spacing", "2,0.75,1", "-o", path("spacing.vti"))
+assert read_vti(path("spacing.vti")).GetSpacing() == (2, 0.75, 1)
 for option in ("--padding", "--frame", "--frames"):
     fails(2, f"{option}: 010 begins with 0", path("in.vti"), *lattice, *push, option, "010", "-o", path("o.vti"))
 
