@@ -437,7 +437,6 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
   AddFixedNodes(options, volume, mesh, messages, deformation);
   AddMaterials(options, volume, mesh, deformation, messages);
   WarnOfFarPulls(options, mesh, messages);
-  WarnOfLooseBody(options, messages);
   // update(part): moves the handles by this fraction of their displacements, or simulates this
   // fraction of --duration.
   const auto run = [&](vtkElasticDeformation* model, const auto& update)
@@ -462,6 +461,7 @@ void DeformByElasticModel(const Options& options, const Volume& volume, vtkUnstr
     {
       deformation.Cut = DescribeCut(model, sheet, messages);
     }
+    WarnOfLooseBody(options, messages);
   };
   if (options.Model == "fem")
   {
