@@ -208,8 +208,8 @@ std::string DescribeMissedVolume(const MeshAtRest& mesh, const ImageGeometry& vo
   const IndexBounds box = FindBox(mesh, volume.GetIndexToWorld());
   return "The deformation mesh at rest holds no voxel of the volume. " +
     Describe("mesh", box, volume) +
-    " Check also that the deformation mesh or, where one is given, the mesh at rest is "
-    "at rest.";
+    " Check also that the points of the deformation mesh, or those of the mesh at rest if there is "
+    "one, are not deformed.";
 }
 
 } // namespace deformvolume
