@@ -414,6 +414,10 @@ class DeformVolume(VTKPythonAlgorithmBase):
         """Returns a number that is more than 0 if the deformation folds, so that parts of the volume are seen twice."""
         return self._counts.get("number_of_inverted_tetrahedra", 0)
 
+    def GetNumberOfHiddenVoxels(self):
+        """Returns the number of voxels of tissue that the output lacks because other tissue is at the same place."""
+        return self._counts.get("number_of_hidden_samples", 0)
+
     def GetNumberOfFlatTetrahedra(self):
         """Returns the number of tetrahedra of the deformation mesh without volume, which are left out."""
         return self._counts.get("number_of_flat_tetrahedra", 0)

@@ -590,6 +590,7 @@ class Pipeline(unittest.TestCase):
         add_vectors(mesh, vectors)
         self.filter.Update()
         self.assertGreater(self.filter.GetNumberOfInvertedTetrahedra(), 0)
+        self.assertGreater(self.filter.GetNumberOfHiddenVoxels(), 0)
         self.expect_error("is not finite", make_mesh([numpy.nan, 0.0, 0.0]))
         self.assertEqual(self.filter.GetNumberOfInvertedTetrahedra(), 0)
         self.assertEqual(self.filter.GetNumberOfCoveredVoxels(), 0)

@@ -603,6 +603,7 @@ TEST(ExtraArrays, FoldCounts)
       vtkDataArray* counts = output->GetPointData()->GetArray("FoldCount");
       EXPECT_EQ(counts->GetDataType(), VTK_UNSIGNED_INT);
       vtkIdType folded = 0;
+      vtkIdType hidden = 0;
       for (vtkIdType id = 0; id < output->GetNumberOfPoints(); ++id)
       {
         const double x = GetPoint(output, id).x;
@@ -616,6 +617,7 @@ TEST(ExtraArrays, FoldCounts)
           isClear = isClear && std::abs(x - a) > 1.0 / 128.0 && std::abs(x - b) > 1.0 / 128.0;
         }
         EXPECT_EQ(counts->GetComponent(id, 0) > 0.0, subject.IsCovered(id));
+        hidden += static_cast<vtkIdType>(std::max(counts->GetComponent(id, 0) - 1.0, 0.0));
         if (isClear)
         {
           EXPECT_EQ(counts->GetComponent(id, 0), static_cast<double>(expected));
@@ -623,6 +625,7 @@ TEST(ExtraArrays, FoldCounts)
         }
       }
       EXPECT_GT(folded, 500);
+      EXPECT_EQ(subject.Filter->GetNumberOfHiddenVoxels(), hidden);
       // A change of a vector, for another update.
       vtkDataArray* vectors = field->GetPointData()->GetVectors();
       vectors->SetTuple3(0, 0.0, 0.0, 0.0);
