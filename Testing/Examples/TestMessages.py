@@ -99,7 +99,8 @@ def check_resamplers():
     for arguments in (mesh, (*lattice, *push)):
         fails(2, "--outside extrapolate", *arguments, *rasterization, "--outside", "extrapolate")
         fails(2, "--smooth-cut", *arguments, *rasterization, *cut, "--smooth-cut")
-        for option, value in (("--keep", "3"), ("--jacobian", path("j.vti")), ("--density-array", "Values")):
+        for option, value in (("--keep", "3"), ("--jacobian", path("j.vti")), ("--fold-count", path("f.vti")),
+                              ("--density-array", "Values")):
             fails(2, f"--resampler mesh-rasterization cannot be used with {option}", *arguments, *rasterization,
                   option, value)
     inverse = (*field, "--field-is-inverse")
